@@ -100,3 +100,60 @@ fn lines_of_a_verbose_run() {
     assert_eq!(run(&["--quiet"], "quiet").good().stderr, "");
     assert_eq!(run(&["--quiet", "--verbose"], "both").code, 2);
 }
+
+/// Earlier names of keys and values act as the present ones.
+#[test]
+fn earlier_names_give_notes() {
+    let folder = scene_folder("earlier_names", SOLID);
+    let dynamics =
+        "[solid.dynamics]\nalpha = 0.3025\ndelta = 0.6\n\n[time]\nend = 0.1\nsolid_step = 0.01\n\n[output]";
+    let solid = SOLID.replace("[output]", dynamics);
+    let spheres = GRAINS.lines().find(|line| line.starts_with("spheres")).unwrap();
+    let law = "fill = \"random\"\ncount = 3\nsizes = { law = \"equal\", size = 0.01 }\nregion = { box = [[-0.1, -0.1, 0.1], [0.1, 0.1, 0.4]] }";
+    let cases = [
+        (solid.clone(), vec![("alpha", "beta"), ("delta", "gamma")]),
+        (
+            GRAINS.replace(spheres, &format!("{spheres}\nmotion = [0, 0, 0]")),
+            vec![("motion", "prescribed_velocity")],
+        ),
+        (GRAINS.replace(spheres, law), vec![("\"equal\"", "\"monodisperse\"")]),
+    ];
+    for (text, names) in cases {
+        let scene = folder.write("scene.toml", &text);
+        let earlier = trackbed(["check", "--json", scene.to_str().unwrap()]).good();
+        let mut present = text.clone();
+        for (old, new) in &names {
+            let quoted =
+                |name: &str| if name.starts_with('"') { name.to_string() } else { format!("`{name}`") };
+            let note = format!("found {}, expected {}", quoted(old), quoted(new));
+            assert!(
+                earlier.stderr.contains("note: ") && earlier.stderr.contains(&note),
+                "{}",
+                earlier.stderr
+            );
+            present = present
+                .replace(&format!("{old} ="), &format!("{new} ="))
+                .replace(&format!("= {old}"), &format!("= {new}"));
+        }
+        folder.write("scene.toml", &present);
+        let now = trackbed(["check", "--json", scene.to_str().unwrap()]).good();
+        // Memory differs between processes.
+        let same = |outcome: &Outcome| -> Vec<String> {
+            outcome.stdout.lines().filter(|line| !line.contains("memory")).map(String::from).collect()
+        };
+        assert_eq!((same(&now), now.stderr.contains("note: ")), (same(&earlier), false));
+    }
+    let scene = folder.write("scene.toml", &solid);
+    let set = "solid.dynamics.beta=0.36";
+    let line = trackbed(["check", scene.to_str().unwrap(), "--set", set]).good().stderr;
+    assert!(line.contains("`delta`"), "{line}");
+    let both = solid.replace("delta", "beta = 0.3\ndelta");
+    folder.write("scene.toml", &both);
+    let refused = trackbed(["check", scene.to_str().unwrap()]);
+    assert_eq!(refused.code, 2);
+    assert!(
+        refused.stderr.contains("solid.dynamics.alpha: found together with `beta`"),
+        "{}",
+        refused.stderr
+    );
+}

@@ -1,6 +1,7 @@
 //! Scene file as a tree with the line of every key, for error messages.
 
 use super::include::{self, Included, IncludedText};
+use super::renames;
 use super::value::Value;
 use super::wording::explain;
 use super::{Problem, SceneError};
@@ -71,13 +72,20 @@ impl Document {
     }
 
     fn tree(&self) -> Spanned<DeTable<'_>> {
+        self.renamed_tree(&mut |_, _, _| {})
+    }
+
+    /// `said`: see [`renames::apply`].
+    fn renamed_tree(&self, said: &mut dyn FnMut(&str, &str, &str)) -> Spanned<DeTable<'_>> {
         let mut tree = DeTable::parse(&self.text).expect("the text was parsed when the document was opened");
         for file in &self.included {
             include::merge(tree.get_mut(), file.tree());
         }
+        renames::apply(tree.get_mut(), said);
         for (path, value) in &self.overrides {
             self.apply(tree.get_mut(), path, value).expect("the override was applied when it was set");
         }
+        renames::apply(tree.get_mut(), said);
         tree
     }
 
@@ -91,7 +99,7 @@ impl Document {
         let Some((path, value)) = assignment.split_once('=') else {
             return Err(override_error(assignment, assignment, "key.path=value"));
         };
-        let (path, value) = (self.numbered(path.trim()), value.trim().to_string());
+        let (path, value) = (renames::path(self.numbered(path.trim())), value.trim().to_string());
         self.apply(self.tree().get_mut(), &path, &value)?;
         let includes = path == include::KEY;
         self.overrides.push((path, value));
@@ -109,7 +117,7 @@ impl Document {
         let mut given = std::mem::take(&mut self.given);
         for assignment in &given {
             let (path, value) = assignment.split_once('=').expect("seen when it was set");
-            let (path, value) = (self.numbered(path.trim()), value.trim().to_string());
+            let (path, value) = (renames::path(self.numbered(path.trim())), value.trim().to_string());
             if path != include::KEY {
                 self.apply(self.tree().get_mut(), &path, &value)?;
                 self.overrides.push((path, value));
@@ -190,7 +198,7 @@ impl Document {
         Ok(())
     }
 
-    /// Deserialises the tree into `T`; suggests names for unknown and replaced keys.
+    /// Deserialises the tree into `T`; suggests names for unknown keys.
     ///
     /// # Errors
     /// Unknown or missing keys, wrong types or units.
@@ -199,13 +207,28 @@ impl Document {
         root.get_mut().remove(include::KEY);
         T::deserialize(Value::root(root)).map_err(|fault| {
             let tree = self.tree();
-            if let Some((key, found, expected)) = replaced_in(tree.get_ref()) {
-                return self.error(&key, found, expected);
+            if let Some((key, new)) = renames::conflict(tree.get_ref()) {
+                return self.problem(&key, Problem::conflict(format!("`{new}`")));
             }
             let value = value_at(tree.get_ref(), &fault.path);
             let (key, found, expected) = explain(&fault.message, &fault.path, value);
             self.error(&key, found, expected)
         })
+    }
+
+    /// Returns a note for each key or value that has an earlier name.
+    pub fn renamed(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        let note = |path: &str, found: &str, new: &str| self.error(path, found, new).to_string();
+        self.renamed_tree(&mut |path, found, new| notes.push(note(path, found, new)));
+        let given = self.given.iter().filter_map(|assignment| {
+            let path = self.numbered(assignment.split_once('=')?.0.trim());
+            let new = replaced::key(&path)?;
+            let old = path.rsplit('.').next().unwrap_or_default();
+            Some(override_error(&path, &format!("`{old}`"), &format!("`{new}`")).to_string())
+        });
+        notes.extend(given);
+        notes
     }
 
     /// Returns an error with its line for the key at `path`.
@@ -384,32 +407,6 @@ fn value_at<'t>(table: &'t DeTable<'_>, path: &[String]) -> Option<&'t DeValue<'
         };
     }
     Some(value)
-}
-
-/// Path, found and expected of the first replaced key or value.
-fn replaced_in(tree: &DeTable<'_>) -> Option<(String, String, String)> {
-    fn visit(path: &str, value: &DeValue<'_>) -> Option<(String, String, String)> {
-        match value {
-            DeValue::Table(entries) => table(&format!("{path}."), entries),
-            DeValue::Array(items) => {
-                items.iter().enumerate().find_map(|(k, item)| visit(&format!("{path}.{k}"), item.get_ref()))
-            }
-            DeValue::String(word) => replaced::value(path, word)
-                .map(|new| (path.to_string(), format!("\"{word}\""), format!("\"{new}\""))),
-            _ => None,
-        }
-    }
-    fn table(prefix: &str, entries: &DeTable<'_>) -> Option<(String, String, String)> {
-        entries.iter().find_map(|(key, value)| {
-            let key = key.get_ref();
-            let path = format!("{prefix}{key}");
-            match replaced::key(&path) {
-                Some(new) => Some((path, format!("`{key}`"), format!("`{new}`"))),
-                None => visit(&path, value.get_ref()),
-            }
-        })
-    }
-    table("", tree)
 }
 
 /// Line number (from 1) of a byte.

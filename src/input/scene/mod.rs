@@ -17,6 +17,7 @@ pub mod material;
 mod output;
 pub mod periodic;
 pub mod reference;
+mod renames;
 pub mod runout;
 pub mod schema;
 pub mod solid;

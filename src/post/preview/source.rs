@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use trackbed_input::model::{self, Job};
 use trackbed_input::scene::{Document, Scene};
 use trackbed_io::failure::Failure;
+use trackbed_io::message;
 use trackbed_io::results::series;
 use trackbed_run::{Hash, named_files};
 
@@ -56,6 +57,7 @@ impl Source {
         let document = self.document()?;
         let scene = model::read_scene(&document)?;
         let job = model::resolve(&document, &scene)?;
+        document.renamed().iter().for_each(|note| message::note(note));
         Ok((document, job))
     }
 

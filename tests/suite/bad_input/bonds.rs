@@ -76,8 +76,8 @@ fn velocity_of_a_grip() {
 
 #[test]
 fn replaced_key_of_strength_spread() {
-    let spread = "young = \"1 MPa\"\n[bond.spread]\nkind = \"normal\"\ndeviation = 0.1\ntogether = true";
-    bonded()
-        .scene("young = \"1 MPa\"", spread)
-        .refused("scene.toml:24: bond.0.spread.together: found `together`, expected `correlated`");
+    let spread = "young = \"1 MPa\"\n[bond.spread]\nkind = \"normal\"\ndeviation = 0.1\ntogether = true\ncorrelated = true";
+    bonded().scene("young = \"1 MPa\"", spread).refused(
+        "scene.toml:24: bond.0.spread.together: found together with `correlated`, expected only one of them",
+    );
 }

@@ -196,6 +196,6 @@ fn outlet_without_grains() {
 #[test]
 fn replaced_key_of_outlet() {
     flow()
-        .scene("recycle = true", "again = true")
-        .refused("scene.toml:20: outlet.0.again: found `again`, expected `recycle`");
+        .scene("recycle = true", "again = true\nrecycle = true")
+        .refused("scene.toml:20: outlet.0.again: found together with `recycle`, expected only one of them");
 }

@@ -381,31 +381,6 @@ fn radial_distribution_without_room() {
 }
 
 #[test]
-fn replaced_keys_of_grains() {
-    for (old, new) in
-        [("motion = [0, 0, 0]", "prescribed_velocity"), ("concentration = 0.3", "solid_fraction")]
-    {
-        let key = old.split(' ').next().unwrap();
-        grains_scene()
-            .scene(SPHERES, &format!("{SPHERES}\n{old}"))
-            .refused(&format!("scene.toml:15: grains.0.{key}: found `{key}`, expected `{new}`"));
-    }
-    grains_scene()
-        .set("grains.0.motion=[0, 0, 0]")
-        .refused("--set: grains.0.motion: found `motion`, expected `prescribed_velocity`");
-}
-
-#[test]
-fn replaced_laws_of_sizes() {
-    let two = "two\", small = 0.05, large = 0.1, large_share = 0.5";
-    for (old, text, new) in [("equal", "equal\", size = 0.1", "monodisperse"), ("two", two, "bidisperse")] {
-        grains_scene()
-            .scene(SPHERES, &SCATTER.replace("monodisperse\", size = 0.1", text))
-            .refused(&format!("scene.toml:15: grains.0.sizes.law: found \"{old}\", expected \"{new}\""));
-    }
-}
-
-#[test]
 fn growth_through_a_wall() {
     let region = "count = 20\nsize = [0.03, 0.04]\nregion = { box = [[-0.1, -0.1, -0.02], [0.1, 0.1, 0.2]] }\n\
                   growth = { porosity = 0.5 }";

@@ -214,15 +214,6 @@ fn strength_reduction_of_an_elastic_solid() {
 }
 
 #[test]
-fn replaced_keys_of_newmark() {
-    for (old, new) in [("alpha", "beta"), ("delta", "gamma")] {
-        solid()
-            .scene("[[solid.load]]", &format!("[solid.dynamics]\n{old} = 0.5\n\n[[solid.load]]"))
-            .refused(&format!("scene.toml:16: solid.dynamics.{old}: found `{old}`, expected `{new}`"));
-    }
-}
-
-#[test]
 fn hht_beside_newmark() {
     solid()
         .set("solid.dynamics={hht_alpha=-0.1, gamma=0.6}")

@@ -92,12 +92,3 @@ fn keys_without_effect_on_meshed_sleeper() {
         "scene.toml:61: solid.reduction: found together with [track.sleeper.mesh], expected only one of them",
     );
 }
-
-#[test]
-fn replaced_jump_methods() {
-    for (old, new) in [("account", "extrapolate"), ("grains", "displace")] {
-        meshed()
-            .append(SCENE, &format!("[track.jump]\nmethod = \"{old}\""))
-            .refused(&format!("scene.toml:62: track.jump.method: found \"{old}\", expected \"{new}\""));
-    }
-}
