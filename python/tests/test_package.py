@@ -95,7 +95,7 @@ def falling(tmp_path):
     return scene
 
 
-def test_a_stepwise_run_gives_the_bits_of_the_program(tmp_path):
+def test_stepwise_run_matches_program_bits(tmp_path):
     whole = trackbed.run(BOX, tmp_path / "whole", set=SMALL, threads=2)
     seen = []
     with trackbed.Simulation(BOX, tmp_path / "steps", set=SMALL, threads=1) as sim:
@@ -118,7 +118,7 @@ def test_a_stepwise_run_gives_the_bits_of_the_program(tmp_path):
     assert whole.summary["status"] == "done" and len(whole.summary["settlement"]["per_cycle"]) == 2
 
 
-def test_free_fall_and_a_force_that_holds(falling, tmp_path):
+def test_free_fall_and_holding_force(falling, tmp_path):
     with trackbed.Simulation(falling, tmp_path / "out") as sim:
         assert len(sim) == 3 and sim.present().all() and list(sim.radii()) == [0.1, 0.1, 0.2]
         mass = sim.masses()
@@ -142,7 +142,7 @@ def test_free_fall_and_a_force_that_holds(falling, tmp_path):
     assert sim.result.summary["energy"]["relative_error"] < 1e-3
 
 
-def test_bad_input_is_a_value_error_with_the_sentence(falling, tmp_path):
+def test_bad_input_raises_value_error(falling, tmp_path):
     with pytest.raises(ValueError, match=r"grains\.0\.count.*found"):
         trackbed.run(BOX, tmp_path / "out", set={"grains.0.count": -1})
     with pytest.raises(ValueError, match=r"found the unknown key `cuont`, expected `count`"):
@@ -188,7 +188,7 @@ def test_a_block_under_pressure(tmp_path):
             sim.positions()
 
 
-def test_a_run_that_is_closed_goes_on(falling, tmp_path):
+def test_closed_run_resumes(falling, tmp_path):
     whole = trackbed.run(falling, tmp_path / "whole")
     with trackbed.Simulation(falling, tmp_path / "parts") as sim:
         sim.run_until(0.05)
@@ -205,7 +205,7 @@ def interrupts():
     signal.signal(signal.SIGINT, before)
 
 
-def test_ctrl_c_pauses_a_step_and_keeps_a_run(falling, tmp_path, interrupts):
+def test_ctrl_c_pauses_and_keeps_run(falling, tmp_path, interrupts):
     long = {"time.end": 1000.0, "output.history_interval": 0.01}
 
     def press():
@@ -227,7 +227,7 @@ def test_ctrl_c_pauses_a_step_and_keeps_a_run(falling, tmp_path, interrupts):
         trackbed.run(falling, tmp_path / "run", set=long)
 
 
-def test_the_lock_of_the_interpreter_is_released(falling, tmp_path):
+def test_interpreter_lock_is_released(falling, tmp_path):
     counted = []
     stop = threading.Event()
 
