@@ -20,7 +20,7 @@ function look() {
     const { left, right, top, bottom } = element.getBoundingClientRect();
     return { left, right, top, bottom, text: element.textContent.trim() };
   };
-  const plots = [...document.querySelectorAll('figure')].map((figure) => {
+  const plots = [...document.querySelectorAll('figure:not(.picture)')].map((figure) => {
     const svg = figure.querySelector(':scope > svg');
     const texts = [...svg.querySelectorAll('text')].filter((t) => t.textContent.trim()).map(box);
     const legend = [...figure.querySelectorAll('ul.legend li')].map(box);
@@ -33,7 +33,8 @@ function look() {
   const targets = [...document.querySelectorAll('nav a')].map((a) => a.getAttribute('href').slice(1));
   const lost = targets.filter((id) => !document.getElementById(id));
   const cells = [...document.querySelectorAll('td, th, p, li, figcaption')].map(box);
-  return { plots, headings, lost, cells, width: document.documentElement.scrollWidth, page: window.innerWidth };
+  const blank = [...document.querySelectorAll('figure.picture img')].filter((i) => i.naturalWidth < 600 || i.width < 300).length;
+  return { plots, headings, lost, cells, blank, width: document.documentElement.scrollWidth, page: window.innerWidth };
 }
 
 const overlap = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1
@@ -57,6 +58,7 @@ async function report(folder) {
     expect(faults.length === 0, `the page asks for ${faults[0]}`);
     expect(seen.headings[0]?.startsWith('Checks and warnings'), `the first heading is ${seen.headings[0]}`);
     expect(seen.lost.length === 0, `links to ${seen.lost}`);
+    expect(seen.blank === 0, `${seen.blank} pictures do not load`);
     expect(seen.width <= seen.page, `${seen.width} pixels wide on ${seen.page}`);
     expect(seen.plots.length > 0, 'no plot');
     for (const plot of seen.plots) {
