@@ -16,9 +16,11 @@ mod study;
 mod view;
 
 use crate::cli::{Command, MeshCommand, NewArgs, RunArgs};
+use std::path::Path;
 use trackbed_io::columns;
 use trackbed_io::failure::Failure;
 use trackbed_io::message;
+use trackbed_post::preview::Source;
 use trackbed_run as run;
 
 use crate::start;
@@ -33,11 +35,13 @@ pub fn execute(command: Command) -> Result<(), Failure> {
         Command::Run(args) => run_scene(args),
         Command::Explain { args, threads, trial, json } => {
             let memory = memory(args.memory.as_deref())?;
+            note_earlier_names(&args.scene, &args.set);
             let how = explain::How { memory, strict: args.strict, threads, trial };
             let report = explain::explain(&args.scene, &args.set, &how)?;
             print(&if json { report.json() } else { report.text(args.verbose) })
         }
         Command::Check { args, json } => {
+            note_earlier_names(&args.scene, &args.set);
             let report = check::check(&args.scene, &args.set, memory(args.memory.as_deref())?, args.strict)?;
             print(&if json { report.json() } else { report.text(args.verbose) })
         }
@@ -49,7 +53,10 @@ pub fn execute(command: Command) -> Result<(), Failure> {
         Command::Demo(args) => demo::demo(args, run_scene, view::view),
         Command::Study(args) => study::study(args),
         Command::Report(args) => report::report(args),
-        Command::Modal(args) => print(&modal::modal(&args)?),
+        Command::Modal(args) => {
+            note_earlier_names(&args.scene, &args.set);
+            print(&modal::modal(&args)?)
+        }
         Command::Mesh { command: MeshCommand::Info(args) } => mesh::info(&args),
         Command::Mesh { command: MeshCommand::Check(args) } => mesh::check(&args),
         Command::Mesh { command: MeshCommand::Convert { mesh, output, format, force } } => {
@@ -60,6 +67,12 @@ pub fn execute(command: Command) -> Result<(), Failure> {
         Command::View(args) => view::view(&args),
         Command::Render(args) => render::render(&args),
     }
+}
+
+/// Names that a scene should have; nothing if it cannot be read, which its command reports.
+fn note_earlier_names(scene: &Path, set: &[String]) {
+    let source = Source { file: scene.to_path_buf(), set: set.to_vec() };
+    source.notes().iter().for_each(|note| message::note(note));
 }
 
 fn new(args: &NewArgs) -> Result<(), Failure> {
@@ -94,6 +107,9 @@ fn run_scene(args: RunArgs) -> Result<(), Failure> {
 fn lead(args: RunArgs, ranks: run::Ranked) -> Result<(), Failure> {
     let memory = memory(args.memory.as_deref())?;
     let verbosity = args.verbosity();
+    if verbosity > run::Verbosity::Quiet && !args.resume {
+        note_earlier_names(&args.scene, &args.set);
+    }
     let options = run::Options {
         out: args.out,
         threads: args.threads,

@@ -34,6 +34,11 @@ impl Samples {
         Samples { nodes, elements, points }
     }
 
+    /// Returns the number of points.
+    pub fn count(&self) -> usize {
+        self.points.len()
+    }
+
     /// Position of a point in `mesh` [m].
     ///
     /// # Panics

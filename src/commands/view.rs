@@ -36,7 +36,9 @@ pub fn view(args: &ViewArgs) -> Result<(), Failure> {
 /// Neither of them; overrides of results.
 pub(super) fn scene(path: &Path, set: &[String]) -> Result<Option<Source>, Failure> {
     if let Some(file) = preview::scene_file(path) {
-        return Ok(Some(Source { file, set: set.to_vec() }));
+        let source = Source { file, set: set.to_vec() };
+        source.notes().iter().for_each(|note| message::note(note));
+        return Ok(Some(source));
     }
     if !path.is_dir() {
         let found = if path.exists() { "a file" } else { "no such directory" };

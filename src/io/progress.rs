@@ -1,7 +1,8 @@
 //! Stage progress: a bar on terminals, else lines.
 
 use crate::message;
-use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use std::fmt::Write;
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
@@ -38,7 +39,17 @@ pub struct Progress {
 const TICKS: u64 = 1000;
 
 /// Leaves about twenty of eighty columns for the message.
-const TEMPLATE: &str = "{prefix:>12} [{bar:20}] {percent:>3}%  {elapsed} of about {duration}  {wide_msg}";
+const TEMPLATE: &str = "{prefix:>12} [{bar:20}] {percent:>3}%  {elapsed}{total}  {wide_msg}";
+
+/// Fraction from which the total time is shown: first steps may be a tenth as long as later ones.
+const KNOWN: f64 = 0.03;
+
+fn total(state: &ProgressState, out: &mut dyn Write) {
+    if f64::from(state.fraction()) >= KNOWN {
+        // A full terminal line is no error.
+        let _ = write!(out, " of about {:#}", HumanDuration(state.duration()));
+    }
+}
 
 impl Progress {
     /// Starts a stage that ends at `total`.
@@ -65,7 +76,7 @@ impl Progress {
     ) -> Progress {
         let bar = ProgressBar::with_draw_target(Some(TICKS), target);
         let style = ProgressStyle::with_template(TEMPLATE).expect("the template is a constant");
-        bar.set_style(style.progress_chars("=> "));
+        bar.set_style(style.with_key("total", total).progress_chars("=> "));
         bar.set_prefix(stage);
         let begun = Instant::now();
         let due = interval.map(|interval| (begun + interval, interval));
@@ -104,7 +115,7 @@ impl Progress {
             HumanDuration(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX)).to_string()
         };
         let whole = seconds / self.share;
-        let whole = if whole.is_finite() { format!(" of about {}", time(whole)) } else { String::new() };
+        let whole = if self.share >= KNOWN { format!(" of about {}", time(whole)) } else { String::new() };
         let parts = [
             format!("{:3.0} %  {}{whole}", 100.0 * self.share, time(seconds)),
             self.bar.message(),
@@ -144,6 +155,7 @@ mod tests {
         progress.at(1.0, String::new);
         progress.bar.force_draw();
         let shown = terminal.contents();
+        assert!(shown.contains(" of about "), "{shown}");
         assert_eq!(shown.lines().count(), 1, "{shown}");
         assert!(
             shown.chars().count() <= 80 && shown.contains(" 50%") && shown.contains("cycle 12345"),
@@ -163,6 +175,10 @@ mod tests {
         assert_eq!(line, "    settling   25 %  2 minutes of about 7 minutes  rms 2e-3 m/s  12 contacts");
         let nothing = Progress::to("settling", 10.0, Verbosity::Normal, hidden(), Some(Duration::ZERO));
         assert!(nothing.line("").starts_with("    settling    0 %  0 seconds"), "{}", nothing.line(""));
+        let mut early = Progress::to("run", 10.0, Verbosity::Normal, hidden(), None).resumed(0.2, 14.0);
+        assert_eq!(early.line("").trim_start(), "run    2 %  14 seconds");
+        early.at(0.4, String::new);
+        assert!(early.line("").contains("4 %  14 seconds of about 6 minutes"), "{}", early.line(""));
         let mut called = false;
         let mut due = nothing;
         due.at(1.0, || {

@@ -236,9 +236,6 @@ fn weigh(
     job: &Job,
     options: &Options,
 ) -> Result<Vec<plausible::Finding>, Failure> {
-    if options.verbosity > Verbosity::Quiet {
-        document.renamed().iter().for_each(|note| message::note(note));
-    }
     let findings = plausible::weigh(scene, job);
     if options.strict {
         plausible::refuse(document, &findings)?;

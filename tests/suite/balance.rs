@@ -254,7 +254,7 @@ fn rejects_deep_start_overlap() {
     let (_, outcome) =
         scene("balance-overlap-behind", &pair("[0.5, 0, 0.5, 0.01]", &floor.replace("-0.008", "0.004")), &[]);
     assert_eq!(outcome.code, 2, "{}", outcome.stderr);
-    assert!(outcome.stderr.contains("grain 0 of \"g\" and plane 0"), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("grain 0 of \"g\" and wall"), "{}", outcome.stderr);
     let (_, outcome) =
         scene("balance-overlap-accepted", &pair("[0.015, 0, 0, 0.01]", "accept_overlap = true\n"), &[]);
     outcome.good();

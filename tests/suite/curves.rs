@@ -106,6 +106,22 @@ fn uniform_stress_is_exact() {
     }
 }
 
+/// Five points along the axis of the column.
+#[test]
+fn line_has_equally_spaced_points() {
+    let folder = Folder::new("line");
+    let line = "[[probe]]\nname = \"axis\"\nline = [[0.5, 0.5, 0.0], [0.5, 0.5, 4.0]]\npoints = 5\nfields = [\"displacement\", \"stress\"]\n\n[output]";
+    run(&folder.write("scene.toml", &COLUMN.replace("[output]", line)), &folder.join("r"), &[]).good();
+    let table = Table::read(&folder.join("r/history.csv"));
+    let last = |name: &str| table.column(name).pop().unwrap();
+    for k in 1..=5 {
+        let (u, stress) = (last(&format!("axis_{k}_u_z")), last(&format!("axis_{k}_stress_zz")));
+        let expected = -f64::from(k - 1) * 100e3 / 20e6;
+        assert!((u - expected).abs() < 1e-9 && (stress + 100e3).abs() < 1e-3, "{k}: {u} {stress}");
+    }
+    assert!(!table.heads.iter().any(|head| head == "axis_6_u_z" || head == "axis_u_z"));
+}
+
 /// Cantilever 2 m × 0.2 m × 0.2 m, 400 N at its end: 12 F (L − x) (z − h/2)/(b h³) to 1 %.
 #[test]
 fn bending_stress_matches_beam_theory() {
@@ -289,6 +305,18 @@ fn rejects_probes_outside_the_solid() {
             "output.frames_at_peaks=true",
             "output.frames_at_peaks: found, but it has no effect without [track.load]",
         ),
+        (&coupled, "probe.1.points=3", "probe.1.points: found, but it has no effect without `line`"),
+        (
+            &coupled,
+            "probe.1={ line = [[0, 0, 0], [0, 0, 0]] }",
+            "probe.1.line: found [0.0, 0.0, 0.0] twice, expected two points",
+        ),
+        (
+            &coupled,
+            "probe.1={ line = [[1, 1, 0], [1, 1, -1]], points = 1 }",
+            "probe.1.points: found 1, expected 2 to 1000",
+        ),
+        (&coupled, "probe.1={ line = [[1, 1, 0], [1, 1, 9]] }", "probe.1.line: found (1, 1, 0.9)"),
         (&grains, "title=\"grains\"", "probe.0: found a probe of the solid, expected a scene with [solid]"),
     ] {
         let outcome = trackbed(["check", &scene.display().to_string(), "--set", set]);

@@ -185,7 +185,7 @@ fn start_overlap_that_throws_is_found() {
     };
     let deep = thrown(&at("0.0196")).expect("a finding");
     assert_eq!(deep.key, "grains.0");
-    assert!(deep.found.starts_with("grain 0 of \"g\" with an overlap of 4.000e-4 m with plane 0"), "{deep}");
+    assert!(deep.found.starts_with("grain 0 of \"g\" with an overlap of 4.000e-4 m with wall"), "{deep}");
     assert!(thrown(&at("0.019999991")).is_none());
     assert!(thrown(&at("0.02")).is_none());
     let accepted =

@@ -17,7 +17,7 @@ impl Names {
     /// Returns `body 12 of "ballast"`.
     pub fn body(&self, group: u32, body: usize) -> String {
         match named(&self.groups, group as usize) {
-            Some(name) => format!("body {body} of \"{name}\""),
+            Some(name) => format!("body {body} of {name:?}"),
             None => format!("body {body}"),
         }
     }
@@ -66,7 +66,12 @@ fn named(names: &[String], index: usize) -> Option<&str> {
 
 /// `wall "top"`, but `wall3`.
 fn kind(kind: &str, name: &str) -> String {
-    if name.starts_with(kind) { name.to_string() } else { format!("{kind} \"{name}\"") }
+    let number = name.strip_prefix(kind).filter(|rest| !rest.is_empty());
+    if number.is_some_and(|rest| rest.bytes().all(|b| b.is_ascii_digit())) {
+        name.to_string()
+    } else {
+        format!("{kind} {name:?}")
+    }
 }
 
 #[cfg(test)]

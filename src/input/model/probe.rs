@@ -15,7 +15,7 @@ use trackbed_fem::samples::{BoxPoints, Samples};
 pub enum Observed {
     /// Node of the solid, by index.
     Node(usize),
-    /// Fields at a node or point of the solid.
+    /// Fields at a node, point or points of a line of the solid.
     Point(PointProbe),
     /// Points of a rectangle in the solid.
     Plane(Samples),
@@ -53,6 +53,7 @@ fn probe(
     let given = [
         ("node", table.node.is_some()),
         ("at", table.at.is_some()),
+        ("line", table.line.is_some()),
         ("plane", table.plane.is_some()),
         ("box", table.solid_box.is_some()),
         ("grain", table.grain.is_some()),
@@ -62,12 +63,15 @@ fn probe(
     if given.iter().filter(|(_, present)| *present).count() != 1 {
         return Err(table.one_of(&given));
     }
-    let [node, at, plane, volume, ..] = given.map(|(_, present)| present);
-    if !(node || at) {
+    let [node, at, line, plane, volume, ..] = given.map(|(_, present)| present);
+    if !line && table.points.is_some() {
+        return Err(table.no_effect("points", "`line`"));
+    }
+    if !(node || at || line) {
         let other = given.iter().find(|(_, present)| *present).map_or("node", |(key, _)| *key);
         table.reject_with([("fields", table.fields.is_some())], &format!("`{other}`"))?;
     }
-    let (own, observed) = match (node || at || plane || volume, solid, grains) {
+    let (own, observed) = match (node || at || line || plane || volume, solid, grains) {
         (true, Some(solid), _) => of_solid(table, solid)?,
         (true, None, _) => return Err(table.here("a probe of the solid", "a scene with [solid]")),
         (false, _, Some(grains)) => of_grains(table, grains)?,
@@ -86,6 +90,9 @@ fn of_solid(table: &Table<Probe>, part: &SolidPart) -> Result<(String, Observed)
     }
     if table.solid_box.is_some() {
         return Ok(("box".into(), Observed::Volume(solid::volume(table, part)?)));
+    }
+    if table.line.is_some() {
+        return Ok(("line".into(), Observed::Point(solid::line(table, part)?)));
     }
     if let Some(fields) = &table.fields {
         let (name, point) = solid::point(table, part, fields)?;

@@ -1,7 +1,7 @@
 //! Scene file as a tree with the line of every key, for error messages.
 
 use super::include::{self, Included, IncludedText};
-use super::renames;
+use super::renames::{self, Rename};
 use super::value::Value;
 use super::wording::explain;
 use super::{Problem, SceneError};
@@ -72,20 +72,22 @@ impl Document {
     }
 
     fn tree(&self) -> Spanned<DeTable<'_>> {
-        self.renamed_tree(&mut |_, _, _| {})
+        self.renamed_tree(&mut Vec::new())
     }
 
-    /// `said`: see [`renames::apply`].
-    fn renamed_tree(&self, said: &mut dyn FnMut(&str, &str, &str)) -> Spanned<DeTable<'_>> {
+    /// `done`: see [`renames::apply`].
+    fn renamed_tree(&self, done: &mut Vec<Rename>) -> Spanned<DeTable<'_>> {
         let mut tree = DeTable::parse(&self.text).expect("the text was parsed when the document was opened");
+        renames::apply(tree.get_mut(), done);
         for file in &self.included {
-            include::merge(tree.get_mut(), file.tree());
+            let mut own = file.tree();
+            renames::apply(&mut own, done);
+            include::merge(tree.get_mut(), own);
         }
-        renames::apply(tree.get_mut(), said);
         for (path, value) in &self.overrides {
             self.apply(tree.get_mut(), path, value).expect("the override was applied when it was set");
+            renames::apply(tree.get_mut(), done);
         }
-        renames::apply(tree.get_mut(), said);
         tree
     }
 
@@ -99,7 +101,7 @@ impl Document {
         let Some((path, value)) = assignment.split_once('=') else {
             return Err(override_error(assignment, assignment, "key.path=value"));
         };
-        let (path, value) = (renames::path(self.numbered(path.trim())), value.trim().to_string());
+        let (path, value) = (self.current(self.numbered(path.trim())), value.trim().to_string());
         self.apply(self.tree().get_mut(), &path, &value)?;
         let includes = path == include::KEY;
         self.overrides.push((path, value));
@@ -117,7 +119,7 @@ impl Document {
         let mut given = std::mem::take(&mut self.given);
         for assignment in &given {
             let (path, value) = assignment.split_once('=').expect("seen when it was set");
-            let (path, value) = (renames::path(self.numbered(path.trim())), value.trim().to_string());
+            let (path, value) = (self.current(self.numbered(path.trim())), value.trim().to_string());
             if path != include::KEY {
                 self.apply(self.tree().get_mut(), &path, &value)?;
                 self.overrides.push((path, value));
@@ -218,17 +220,35 @@ impl Document {
 
     /// Returns a note for each key or value that has an earlier name.
     pub fn renamed(&self) -> Vec<String> {
-        let mut notes = Vec::new();
-        let note = |path: &str, found: &str, new: &str| self.error(path, found, new).to_string();
-        self.renamed_tree(&mut |path, found, new| notes.push(note(path, found, new)));
+        let mut done = Vec::new();
+        self.renamed_tree(&mut done);
+        let below = |path: &str, key: &str| {
+            path.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        let hidden = |path: &str| self.overrides.iter().any(|(key, _)| below(path, key));
+        let notes = done.iter().filter_map(|Rename { path, span, old, new }| match self.line(span) {
+            Some((file, line)) if !hidden(path) => {
+                Some(SceneError { line: Some(line), ..SceneError::whole(file, path, old, new) }.to_string())
+            }
+            Some(_) => None,
+            None => Some(override_error(path, old, new).to_string()),
+        });
         let given = self.given.iter().filter_map(|assignment| {
             let path = self.numbered(assignment.split_once('=')?.0.trim());
-            let new = replaced::key(&path)?;
-            let old = path.rsplit('.').next().unwrap_or_default();
+            let (new, old) = (replaced::key(&path)?, path.rsplit('.').next()?);
             Some(override_error(&path, &format!("`{old}`"), &format!("`{new}`")).to_string())
         });
-        notes.extend(given);
-        notes
+        let mut all: Vec<String> = notes.chain(given).collect();
+        all.dedup();
+        all
+    }
+
+    /// Path of an override with the current name of its key, unless the earlier one is present.
+    fn current(&self, path: String) -> String {
+        match (replaced::key(&path), path.rsplit_once('.')) {
+            (Some(new), Some((table, _))) if !self.has(&path) => format!("{table}.{new}"),
+            _ => path,
+        }
     }
 
     /// Returns an error with its line for the key at `path`.

@@ -154,13 +154,17 @@ fn yes() -> bool {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Probe {
-    /// Header of columns; default `n<number>`, `point`, `plane`, `box`, `grain<number>`, group, `region`.
+    /// Header of columns; default `n<number>`, `point`, `line`, `plane`, `box`, `grain<number>`, group, `region`.
     pub name: Option<String>,
-    /// Number of a node of the solid; or `at`, `plane`, `box`, `grain`, `group`, `region`.
+    /// Number of a node of the solid; or `at`, `line`, `plane`, `box`, `grain`, `group`, `region`.
     pub node: Option<u32>,
     /// Point of the undeformed solid, without `fields` its nearest node [m]; or `node`.
     pub at: Option<[Quantity<Length>; 3]>,
-    /// Fields of a node or point, with the values of frames; default displacement, velocity; with `node`, `at`.
+    /// From, to: equally spaced points of the undeformed solid, `<name>_1`, … [m]; or `node`.
+    pub line: Option<[[Quantity<Length>; 3]; 2]>,
+    /// Points of the `line`; default 11; 2–1000; with `line`.
+    pub points: Option<u32>,
+    /// Fields of a node or point, with the values of frames; default displacement, velocity; with `node`, `at`, `line`.
     pub fields: Option<Vec<ProbeField>>,
     /// Horizontal rectangle `[low, high]` in the undeformed solid: mean, largest vertical stress [m]; or `node`.
     pub plane: Option<[[Quantity<Length>; 3]; 2]>,

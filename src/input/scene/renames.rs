@@ -1,43 +1,55 @@
 //! Earlier names of keys and values ([`replaced`]) in a scene.
 
+use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 use trackbed_io::replaced;
 
-/// Replaces earlier names by current ones unless both stand there; `said` receives path, found and new name.
-pub(super) fn apply(tree: &mut DeTable<'_>, said: &mut dyn FnMut(&str, &str, &str)) {
-    table("", tree, said);
+/// Earlier name that was replaced.
+pub(super) struct Rename {
+    /// Path as written.
+    pub path: String,
+    /// Place in the text.
+    pub span: Range<usize>,
+    /// Name as written, quoted.
+    pub old: String,
+    /// Current name, quoted.
+    pub new: String,
 }
 
-fn table(prefix: &str, entries: &mut DeTable<'_>, said: &mut dyn FnMut(&str, &str, &str)) {
+/// Replaces earlier names by current ones; a key whose current name is present stays.
+pub(super) fn apply(tree: &mut DeTable<'_>, done: &mut Vec<Rename>) {
+    table("", tree, done);
+}
+
+fn table(prefix: &str, entries: &mut DeTable<'_>, done: &mut Vec<Rename>) {
     let names: Vec<String> = entries.keys().map(|key| key.get_ref().to_string()).collect();
     for name in names {
         let path = format!("{prefix}{name}");
         let new = replaced::key(&path).filter(|new| !entries.contains_key(*new));
-        let name = new.unwrap_or(&name).to_string();
-        if let Some(new) = new {
-            let old = path.rsplit('.').next().unwrap_or_default();
-            said(&path, &format!("`{old}`"), &format!("`{new}`"));
-            if let Some((key, value)) = entries.remove_entry(old) {
-                entries.insert(Spanned::new(key.span(), new.into()), value);
-            }
+        if let Some((new, (key, value))) = new.and_then(|new| Some((new, entries.remove_entry(&*name)?))) {
+            let span = key.span();
+            entries.insert(Spanned::new(span.clone(), new.into()), value);
+            done.push(Rename { path, span, old: format!("`{name}`"), new: format!("`{new}`") });
         }
-        let Some(value) = entries.get_mut(name.as_str()) else { continue };
-        visit(&format!("{prefix}{name}"), value.get_mut(), said);
+        let name = new.unwrap_or(&name);
+        if let Some(value) = entries.get_mut(name) {
+            visit(&format!("{prefix}{name}"), value, done);
+        }
     }
 }
 
-fn visit(path: &str, value: &mut DeValue<'_>, said: &mut dyn FnMut(&str, &str, &str)) {
-    match value {
-        DeValue::Table(entries) => table(&format!("{path}."), entries, said),
+fn visit(path: &str, value: &mut Spanned<DeValue<'_>>, done: &mut Vec<Rename>) {
+    let span = value.span();
+    match value.get_mut() {
+        DeValue::Table(entries) => table(&format!("{path}."), entries, done),
         DeValue::Array(items) => {
-            for (k, item) in items.iter_mut().enumerate() {
-                visit(&format!("{path}.{k}"), item.get_mut(), said);
-            }
+            items.iter_mut().enumerate().for_each(|(k, item)| visit(&format!("{path}.{k}"), item, done));
         }
         DeValue::String(word) => {
             if let Some(new) = replaced::value(path, word) {
-                said(path, &format!("\"{word}\""), &format!("\"{new}\""));
+                let (old, new_text) = (format!("\"{word}\""), format!("\"{new}\""));
+                done.push(Rename { path: path.into(), span, old, new: new_text });
                 *word = new.into();
             }
         }
@@ -45,15 +57,7 @@ fn visit(path: &str, value: &mut DeValue<'_>, said: &mut dyn FnMut(&str, &str, &
     }
 }
 
-/// Returns the path with the current name of its key.
-pub(super) fn path(path: String) -> String {
-    match (replaced::key(&path), path.rsplit_once('.')) {
-        (Some(new), Some((table, _))) => format!("{table}.{new}"),
-        _ => path,
-    }
-}
-
-/// Path of the first earlier name that stands beside its new name, and the new name.
+/// Path of the first key that stands beside its current name, and that name.
 pub(super) fn conflict(tree: &DeTable<'_>) -> Option<(String, &'static str)> {
     fn table(prefix: &str, entries: &DeTable<'_>) -> Option<(String, &'static str)> {
         entries.iter().find_map(|(key, value)| {

@@ -18,7 +18,12 @@ pub fn probes(c: &Context) -> Vec<Item> {
                 ball(c.job.solid.as_ref()?.model.mesh().coordinates[*node], PROBE * c.size())
             }
             Observed::Point(point) => {
-                ball(point.samples.position(c.job.solid.as_ref()?.model.mesh(), 0), PROBE * c.size())
+                let (mesh, r) = (c.job.solid.as_ref()?.model.mesh(), PROBE * c.size());
+                let spheres = (0..point.samples.count()).map(|k| {
+                    let [x, y, z] = point.samples.position(mesh, k);
+                    [x, y, z, r]
+                });
+                Shape { spheres: spheres.collect(), ..Shape::default() }
             }
             Observed::Plane(_) | Observed::Volume(_) => {
                 let table = &c.scene.probe[k];

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use trackbed_input::model::{self, Job};
 use trackbed_input::scene::{Document, Scene};
 use trackbed_io::failure::Failure;
-use trackbed_io::message;
 use trackbed_io::results::series;
 use trackbed_run::{Hash, named_files};
 
@@ -49,6 +48,11 @@ impl Source {
         Ok(document)
     }
 
+    /// Returns notes about earlier names of keys and values.
+    pub fn notes(&self) -> Vec<String> {
+        self.document().map_or_else(|_| Vec::new(), |document| document.renamed())
+    }
+
     /// Resolves the scene.
     ///
     /// # Errors
@@ -57,7 +61,6 @@ impl Source {
         let document = self.document()?;
         let scene = model::read_scene(&document)?;
         let job = model::resolve(&document, &scene)?;
-        document.renamed().iter().for_each(|note| message::note(note));
         Ok((document, job))
     }
 

@@ -20,13 +20,16 @@ pub fn record(name: &str, observed: &Observed, view: SolidView<'_>, row: &mut Ro
             (ProbeField::Acceleration, history::PROBE_A, &state.a),
         ] {
             if point.has(field) {
-                row.vector(column.of(name), point.samples.vector(values)[0]);
+                let names = point.names(name);
+                let values = point.samples.vector(values);
+                names.iter().zip(values).for_each(|(name, value)| row.vector(column.of(name), value));
             }
         }
     }
     stresses(name, observed, view, row);
     if let Some(point) = point_with(observed, ProbeField::Strain) {
-        row.tensor(history::PROBE_STRAIN.of(name), point.samples.strain(model, state)[0]);
+        let strains = point.names(name).into_iter().zip(point.samples.strain(model, state));
+        strains.for_each(|(name, strain)| row.tensor(history::PROBE_STRAIN.of(&name), strain));
     }
 }
 
@@ -41,7 +44,8 @@ fn stresses(name: &str, observed: &Observed, SolidView { model, state }: SolidVi
     let vertical = |s: &[f64; 6]| s[VERTICAL];
     match observed {
         Observed::Point(point) if point.has(ProbeField::Stress) => {
-            row.tensor(history::PROBE_STRESS.of(name), point.samples.stress(model, state)[0]);
+            let stresses = point.names(name).into_iter().zip(point.samples.stress(model, state));
+            stresses.for_each(|(name, stress)| row.tensor(history::PROBE_STRESS.of(&name), stress));
         }
         Observed::Plane(samples) => {
             let points: Vec<_> = samples.stress(model, state).into_iter().map(|s| (s, 1.0)).collect();

@@ -57,9 +57,9 @@ pub fn grains_below_walls(view: GrainsView<'_>, grains: &GrainsPart) -> Option<C
     Some(Check::new("grains below all walls over all grains", value, LOST, || {
         let x = state.position(lost[0]);
         format!(
-            "grains lost below all walls: {}, first body {} at ({:.4}, {:.4}, {:.4}) m. Close the walls, or remove grains with an [[outlet]].",
+            "grains lost below all walls: {}, first {} at ({:.4}, {:.4}, {:.4}) m. Close the walls, or remove grains with an [[outlet]].",
             lost.len(),
-            lost[0],
+            model.name_objects(&format!("body {}", lost[0])),
             x.x,
             x.y,
             x.z

@@ -16,8 +16,9 @@ pub fn lost_bodies(view: GrainsView<'_>, lowest: f64) -> (Check, Option<String>)
     let present = (0..model.body_count()).filter(|b| state.present(*b)).count();
     let message = first.map(|first| {
         let x = state.position(first);
+        let first = model.name_objects(&format!("body {first}"));
         format!(
-            "bodies lost below the surface of the solid: {count}, first body {first} at ({:.4}, {:.4}, {:.4}) m. Enlarge the mesh, or place walls at its borders.",
+            "bodies lost below the surface of the solid: {count}, first {first} at ({:.4}, {:.4}, {:.4}) m. Enlarge the mesh, or place walls at its borders.",
             x.x, x.y, x.z
         )
     });

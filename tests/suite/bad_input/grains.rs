@@ -385,7 +385,7 @@ fn growth_through_a_wall() {
     let region = "count = 20\nsize = [0.03, 0.04]\nregion = { box = [[-0.1, -0.1, -0.02], [0.1, 0.1, 0.2]] }\n\
                   growth = { porosity = 0.5 }";
     grains_scene().scene(SPHERES, region).refused(
-        "scene.toml:16: grains.0.region: found a region 2.000e-2 m behind plane 0, expected a region within the walls: grains \
+        "scene.toml:16: grains.0.region: found a region 2.000e-2 m behind wall0, expected a region within the walls: grains \
          grow up to its sides",
     );
 }
@@ -410,7 +410,7 @@ const TAMPING: &str = "[[compaction]]\nkind = \"tamping\"\nregion = [[-0.1, -0.1
 fn plate_through_a_wall() {
     let beside = "[[walls]]\nkind = \"plane\"\npoint = [-0.06, 0, 0]\nnormal = [1, 0, 0]\nmaterial = \"stone\"\n\n[[walls]]\n";
     grains_scene().scene("[[walls]]\n", beside).scene("[time]", TAMPING).refused(
-        "scene.toml:35: compaction.0.at: found the plate at (0, 0) m 4.000e-2 m through plane 0, expected plates between the \
+        "scene.toml:35: compaction.0.at: found the plate at (0, 0) m 4.000e-2 m through wall0, expected plates between the \
          walls",
     );
 }

@@ -222,7 +222,7 @@ fn leaving() -> Row {
             + &ball("ball", [0.8, 0.5, 0.05], 0.05, [speed, 0.0, 0.0])
             + &coupled("substeps = \"auto\"", 0.4, 400)
     };
-    let remark = "bodies lost below the surface of the solid: 1, first body 0 at";
+    let remark = "bodies lost below the surface of the solid: 1, first body 0 of \"ball\" at";
     let case = Case::run(&text(2.0), &[]).good();
     let account = case.value("/energy/largest_relative_error");
     assert!(case.warned(remark) && case.last("ball_z") < -0.1 && account < 0.01, "{account}");

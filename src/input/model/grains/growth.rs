@@ -42,7 +42,7 @@ fn crossed(grains: &GrainsPart, container: &Container, limit: f64) -> Option<Str
     };
     for (k, plane) in grains.walls.planes.iter().enumerate() {
         if let Some(found) = behind(&plane.point, &plane.normal) {
-            return Some(format!("{found} plane {k}"));
+            return Some(format!("{found} {}", grains.names().plane(k)));
         }
     }
     let later = grains.packing.deposition.is_some();

@@ -258,7 +258,7 @@ impl Exemptions<'_> {
     fn partner(&self, partner: &Partner) -> String {
         match partner {
             Partner::Body(b) => self.name(*b),
-            other => other.to_string(),
+            other => self.model.name_objects(other),
         }
     }
 }

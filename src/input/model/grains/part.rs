@@ -184,7 +184,8 @@ impl GrainsPart {
         input
     }
 
-    fn names(&self) -> Names {
+    /// Returns the names of groups, walls and materials.
+    pub fn names(&self) -> Names {
         Names {
             groups: self.groups.names.clone(),
             planes: self.walls.plane_names.clone(),

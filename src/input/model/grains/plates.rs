@@ -30,7 +30,8 @@ pub fn check_plates(document: &Document, grains: &GrainsPart) -> Result<(), Scen
 fn through(grains: &GrainsPart, plate: &Footprint) -> Option<String> {
     let planes = grains.walls.planes.iter().enumerate();
     let mut planes = planes.filter_map(|(k, p)| {
-        plate.behind(&p.point, &p.normal).map(|depth| format!("{depth:.3e} m through plane {k}"))
+        let depth = plate.behind(&p.point, &p.normal)?;
+        Some(format!("{depth:.3e} m through {}", grains.names().plane(k)))
     });
     let walls = grains.walls.others.iter().zip(&grains.walls.names);
     let mut walls =

@@ -8,15 +8,17 @@ use trackbed_fem::samples::{BoxPoints, Samples};
 
 /// Sampling points of a rectangle per side.
 const PER_SIDE: usize = 16;
+/// Default points of a line.
+const POINTS: u32 = 11;
 /// Tolerance of natural coordinates, for points on the surface.
 const SLACK: f64 = 1e-6;
 /// Distance within which a point is a node, over the length of the diagonal of the solid.
 const AT_NODE: f64 = 1e-9;
 
-/// Point of the solid with its fields.
+/// Points of the solid with their fields.
 #[derive(Clone, Debug)]
 pub struct PointProbe {
-    /// The point.
+    /// The points.
     pub samples: Samples,
     /// Fields of the table.
     fields: Vec<ProbeField>,
@@ -26,6 +28,14 @@ impl PointProbe {
     /// Whether it has the columns of `field`.
     pub fn has(&self, field: ProbeField) -> bool {
         self.fields.contains(&field)
+    }
+
+    /// Returns the names of the points of probe `name`: numbered from 1, or that of a single point.
+    pub fn names(&self, name: &str) -> Vec<String> {
+        match self.samples.count() {
+            1 => vec![name.to_string()],
+            count => (1..=count).map(|k| format!("{name}_{k}")).collect(),
+        }
     }
 }
 
@@ -49,6 +59,29 @@ pub(super) fn point(
     };
     let samples = Samples::new(mesh, &[weights]);
     Ok((name, PointProbe { samples, fields: fields.to_vec() }))
+}
+
+/// Resolves `line`: equally spaced points.
+pub(super) fn line(table: &Table<Probe>, solid: &SolidPart) -> Result<PointProbe, SceneError> {
+    let ends = table.need("line", table.line, "the ends of a line")?;
+    let [from, to] = ends.map(|end| vector(&end));
+    if from == to {
+        return Err(table.error("line", format!("{from:?} twice"), "two points"));
+    }
+    let count = table.points.unwrap_or(POINTS);
+    table.check("points", count, |n| (2.0..=1000.0).contains(&n), "2 to 1000")?;
+    let places = Places::new(solid);
+    let at = |k: u32| [0, 1, 2].map(|d| from[d] + (to[d] - from[d]) * f64::from(k) / f64::from(count - 1));
+    let weights = |k: u32| places.weights(at(k)).ok_or_else(|| outside(table, "line", solid, at(k)));
+    let points: Vec<_> = (0..count).map(weights).collect::<Result<_, _>>()?;
+    let fields = match &table.fields {
+        Some(fields) if fields.is_empty() => {
+            return Err(table.error("fields", "an empty list", "one field or more"));
+        }
+        Some(fields) => fields.clone(),
+        None => vec![ProbeField::Displacement, ProbeField::Velocity],
+    };
+    Ok(PointProbe { samples: Samples::new(solid.model.mesh(), &points), fields })
 }
 
 /// Resolves `plane`: midpoints of a grid.

@@ -2,7 +2,7 @@
 
 use crate::render;
 use crate::report::data::{RunData, State};
-use crate::report::page::{Section, joined, plots};
+use crate::report::page::{Section, joined, paragraph, plots};
 use base64::prelude::{BASE64_STANDARD, Engine};
 use maud::{Markup, PreEscaped, html};
 
@@ -18,7 +18,12 @@ pub fn picture(runs: &[RunData]) -> Option<Section> {
     let size = SIZES[usize::from(!alone)];
     // Mode shapes have no scale.
     let drawn = runs.iter().filter(|run| run.state() != State::Modes).take(MOST).filter_map(|run| {
-        let (bytes, remark) = render::last_frame(&run.dir, size).ok()??;
+        let (bytes, remark) = match render::last_frame(&run.dir, size) {
+            Ok(drawn) => drawn?,
+            // Without frames there is none.
+            Err(_) if !run.dir.join("frames").is_dir() => return None,
+            Err(_) => return Some(paragraph(&format!("{}: the last frame cannot be read.", run.label))),
+        };
         Some(figure(&bytes, &if alone { remark } else { format!("{}: {remark}", run.label) }))
     });
     let figures: Vec<Markup> = drawn.collect();
