@@ -44,7 +44,7 @@ const TEMPLATE: &str = "{prefix:>12} [{bar:20}] {percent:>3}%  {elapsed}{total} 
 /// Fraction from which the total time is shown: first steps may be a tenth as long as later ones.
 const KNOWN: f64 = 0.03;
 
-fn total(state: &ProgressState, out: &mut dyn Write) {
+fn show_total(state: &ProgressState, out: &mut dyn Write) {
     if f64::from(state.fraction()) >= KNOWN {
         // A full terminal line is no error.
         let _ = write!(out, " of about {:#}", HumanDuration(state.duration()));
@@ -76,7 +76,7 @@ impl Progress {
     ) -> Progress {
         let bar = ProgressBar::with_draw_target(Some(TICKS), target);
         let style = ProgressStyle::with_template(TEMPLATE).expect("the template is a constant");
-        bar.set_style(style.with_key("total", total).progress_chars("=> "));
+        bar.set_style(style.with_key("total", show_total).progress_chars("=> "));
         bar.set_prefix(stage);
         let begun = Instant::now();
         let due = interval.map(|interval| (begun + interval, interval));
