@@ -308,15 +308,15 @@ fn rejects_probes_outside_the_solid() {
         (&coupled, "probe.1.points=3", "probe.1.points: found, but it has no effect without `line`"),
         (
             &coupled,
-            "probe.1={ line = [[0, 0, 0], [0, 0, 0]] }",
-            "probe.1.line: found [0.0, 0.0, 0.0] twice, expected two points",
+            "probe=[{ line = [[0, 0, 0], [0, 0, 0]] }]",
+            "probe.0.line: found [0.0, 0.0, 0.0] twice, expected two points",
         ),
         (
             &coupled,
-            "probe.1={ line = [[1, 1, 0], [1, 1, -1]], points = 1 }",
-            "probe.1.points: found 1, expected 2 to 1000",
+            "probe=[{ line = [[1, 1, 0], [1, 1, -1]], points = 1 }]",
+            "probe.0.points: found 1, expected 2 to 1000",
         ),
-        (&coupled, "probe.1={ line = [[1, 1, 0], [1, 1, 9]] }", "probe.1.line: found (1, 1, 0.9)"),
+        (&coupled, "probe=[{ line = [[1, 1, 0], [1, 1, 9]] }]", "probe.0.line: found (1, 1, 0.9)"),
         (&grains, "title=\"grains\"", "probe.0: found a probe of the solid, expected a scene with [solid]"),
     ] {
         let outcome = trackbed(["check", &scene.display().to_string(), "--set", set]);

@@ -112,7 +112,7 @@ fn earlier_names_give_notes() {
         "[solid.dynamics]\nalpha = 0.3025\ndelta = 0.6\n\n[time]\nend = 0.1\nsolid_step = 0.01\n\n[output]";
     let solid = SOLID.replace("[output]", dynamics);
     let spheres = GRAINS.lines().find(|line| line.starts_with("spheres")).unwrap();
-    let law = "fill = \"random\"\ncount = 3\nsizes = { law = \"equal\", size = 0.01 }\nregion = { box = [[-0.1, -0.1, 0.1], [0.1, 0.1, 0.4]] }";
+    let law = "count = 3\nsizes = { law = \"equal\", size = 0.01 }\nregion = { box = [[-0.1, -0.1, 0.1], [0.1, 0.1, 0.4]] }";
     let cases = [
         (solid.clone(), vec![("alpha", "beta"), ("delta", "gamma")]),
         (
