@@ -16,6 +16,9 @@ pub use trackbed_dem::shape::polyhedron::Surface;
 /// File extensions of surfaces.
 pub const SURFACE_ENDINGS: [&str; 9] = ["stl", "obj", "dat", "txt", "tri", "srf", "asc", "tif", "tiff"];
 
+/// Largest coordinate [m].
+const LARGEST: f64 = 1e50;
+
 /// Merging distance of STL vertices over the box diagonal, if exact merging leaves gaps.
 const STL_TOLERANCE: f64 = 1e-6;
 
@@ -24,8 +27,18 @@ const STL_TOLERANCE: f64 = 1e-6;
 /// vertices are merged; open STL files also within 1e-6 of their size.
 ///
 /// # Errors
-/// Unknown extensions and errors of the format's reader.
+/// Unknown extensions, errors of the format's reader, coordinates whose moments of volume would overflow.
 pub fn read_surface(path: &Path) -> Result<Surface, ReadError> {
+    let surface = read_any(path)?;
+    match surface.vertices.iter().flatten().find(|x| x.abs() > LARGEST) {
+        Some(x) => {
+            Err(ReadError::whole(path, "vertices", format!("{x:e} m"), format!("at most {LARGEST:e} m")))
+        }
+        None => Ok(surface),
+    }
+}
+
+fn read_any(path: &Path) -> Result<Surface, ReadError> {
     let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     match ending.as_str() {
         "stl" => stl::read_stl(path).map(|soup| mended(&soup)),

@@ -100,3 +100,15 @@ fn comment_states_unit() {
         assert_eq!(unit("w.obj", content), None);
     }
 }
+
+#[test]
+fn rejects_coordinates_whose_moments_overflow() {
+    for (name, text) in [
+        ("big.obj", "v 0 0 0\nv 1e90 0 0\nv 0 1e90 0\nf 1 2 3\n"),
+        ("big.dat", "3 1\n0 0 0\n1e90 0 0\n0 1e90 0\n1 2 3\n"),
+    ] {
+        let refused = File::new(name, text).read().unwrap_err();
+        assert!(refused.ends_with("vertices: found 1e90 m, expected at most 1e50 m"), "{refused}");
+    }
+    File::new("fits.obj", "v 0 0 0\nv 1e49 0 0\nv 0 1e49 0\nf 1 2 3\n").read().unwrap();
+}
