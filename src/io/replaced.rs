@@ -48,6 +48,17 @@ fn matches(pattern: &str, path: &[&str]) -> bool {
     parts.len() == path.len() && parts.iter().zip(path).all(|(part, key)| *part == "*" || part == key)
 }
 
+/// Whether a scene text, a path or a value may have a replaced name.
+pub fn occurs_in(text: &str) -> bool {
+    let is_key = |(path, _): &(&str, &str)| path.rsplit('.').next().is_some_and(|key| text.contains(key));
+    let quoted = |old: &str, mark: char| {
+        text.match_indices(old)
+            .any(|(at, _)| text[..at].ends_with(mark) && text[at + old.len()..].starts_with(mark))
+    };
+    let is_value = |(_, old, _): &(&str, &str, &str)| text == *old || quoted(old, '"') || quoted(old, '\'');
+    KEYS.iter().any(is_key) || VALUES.iter().any(is_value)
+}
+
 /// Returns the new name of the scene key at `path`, if replaced.
 pub fn key(path: &str) -> Option<&'static str> {
     let path: Vec<&str> = path.split('.').collect();
@@ -119,6 +130,8 @@ mod tests {
         assert_eq!(key("walls.0.motion"), None);
         assert_eq!(value("track.jump.method", "account"), Some("extrapolate"));
         assert_eq!(value("track.jump.method", "extrapolate"), None);
+        assert!(occurs_in("method = \"grains\"") && occurs_in("account") && occurs_in("delta = 0.5"));
+        assert!(!occurs_in("[[grains]]\ncount = 2\nname = \"two grains\"\n"));
         assert_eq!(option("render", "--least"), Some("--min-force"));
         assert_eq!(option("explain", "--least"), None);
         for (old, new) in [

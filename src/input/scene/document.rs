@@ -78,15 +78,21 @@ impl Document {
     /// `done`: see [`renames::apply`].
     fn renamed_tree(&self, done: &mut Vec<Rename>) -> Spanned<DeTable<'_>> {
         let mut tree = DeTable::parse(&self.text).expect("the text was parsed when the document was opened");
-        renames::apply(tree.get_mut(), done);
+        if replaced::occurs_in(&self.text) {
+            renames::apply(tree.get_mut(), done);
+        }
         for file in &self.included {
             let mut own = file.tree();
-            renames::apply(&mut own, done);
+            if replaced::occurs_in(file.text()) {
+                renames::apply(&mut own, done);
+            }
             include::merge(tree.get_mut(), own);
         }
         for (path, value) in &self.overrides {
             self.apply(tree.get_mut(), path, value).expect("the override was applied when it was set");
-            renames::apply(tree.get_mut(), done);
+            if replaced::occurs_in(path) || replaced::occurs_in(value) {
+                renames::apply(tree.get_mut(), done);
+            }
         }
         tree
     }

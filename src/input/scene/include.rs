@@ -41,6 +41,10 @@ impl Included {
         IncludedText { name: self.named.to_string_lossy().into_owned(), text }
     }
 
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
     pub fn end(&self) -> usize {
         self.text.len()
     }
