@@ -95,13 +95,11 @@ impl Steps {
 
 /// Converts a step error, with names of bodies and walls.
 pub fn failed(model: &dem::Model) -> impl Fn(StepError) -> Failure {
-    |error| convert(model, &error)
-}
-
-fn convert(model: &dem::Model, error: &StepError) -> Failure {
-    let text = model.name_objects(error);
-    // A lost rank is no numerical failure.
-    if matches!(error, StepError::Rank { .. }) { Failure::Other(text) } else { Failure::Numerical(text) }
+    |error| {
+        let text = model.name_objects(&error);
+        // A lost rank is no numerical failure.
+        if matches!(error, StepError::Rank { .. }) { Failure::Other(text) } else { Failure::Numerical(text) }
+    }
 }
 
 impl BackEnd for Steps {

@@ -26,6 +26,8 @@ pub struct Document {
     given: Vec<String>,
     /// Texts of included files, read in place of the files.
     stored: Vec<IncludedText>,
+    /// Whether any text or override may have an earlier name.
+    has_earlier_names: bool,
 }
 
 impl Document {
@@ -66,8 +68,9 @@ impl Document {
             overrides: Vec::new(),
             given: Vec::new(),
             stored,
+            has_earlier_names: false,
         };
-        document.included = include::read(&document)?;
+        document.include()?;
         Ok(document)
     }
 
@@ -78,23 +81,29 @@ impl Document {
     /// `done`: see [`renames::apply`].
     fn renamed_tree(&self, done: &mut Vec<Rename>) -> Spanned<DeTable<'_>> {
         let mut tree = DeTable::parse(&self.text).expect("the text was parsed when the document was opened");
-        if replaced::occurs_in(&self.text) {
-            renames::apply(tree.get_mut(), done);
-        }
+        let mut rename = |tree: &mut DeTable<'_>| {
+            if self.has_earlier_names {
+                renames::apply(tree, done);
+            }
+        };
+        rename(tree.get_mut());
         for file in &self.included {
             let mut own = file.tree();
-            if replaced::occurs_in(file.text()) {
-                renames::apply(&mut own, done);
-            }
+            rename(&mut own);
             include::merge(tree.get_mut(), own);
         }
         for (path, value) in &self.overrides {
             self.apply(tree.get_mut(), path, value).expect("the override was applied when it was set");
-            if replaced::occurs_in(path) || replaced::occurs_in(value) {
-                renames::apply(tree.get_mut(), done);
-            }
+            rename(tree.get_mut());
         }
         tree
+    }
+
+    fn include(&mut self) -> Result<(), SceneError> {
+        self.included = include::read(self)?;
+        let mut texts = self.included.iter().map(Included::text).chain([&*self.text]);
+        self.has_earlier_names |= texts.any(replaced::occurs_in);
+        Ok(())
     }
 
     /// Sets one key, given as `key.path=value`. An empty value removes the key; a value that is not TOML is a
@@ -110,6 +119,7 @@ impl Document {
         let (path, value) = (self.current(self.numbered(path.trim())), value.trim().to_string());
         self.apply(self.tree().get_mut(), &path, &value)?;
         let includes = path == include::KEY;
+        self.has_earlier_names |= [assignment, &value].into_iter().any(replaced::occurs_in);
         self.overrides.push((path, value));
         self.given.push(assignment.to_string());
         if includes {
@@ -120,7 +130,7 @@ impl Document {
 
     /// Names are resolved again: their indices may differ in the new files.
     fn include_others(&mut self) -> Result<(), SceneError> {
-        self.included = include::read(self)?;
+        self.include()?;
         self.overrides.retain(|(path, _)| path == include::KEY);
         let mut given = std::mem::take(&mut self.given);
         for assignment in &given {
@@ -228,10 +238,7 @@ impl Document {
     pub fn renamed(&self) -> Vec<String> {
         let mut done = Vec::new();
         self.renamed_tree(&mut done);
-        let below = |path: &str, key: &str| {
-            path.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-        };
-        let hidden = |path: &str| self.overrides.iter().any(|(key, _)| below(path, key));
+        let hidden = |path: &str| self.overrides.iter().any(|(key, _)| is_below(path, key));
         let notes = done.iter().filter_map(|Rename { path, span, old, new }| match self.line(span) {
             Some((file, line)) if !hidden(path) => {
                 Some(SceneError { line: Some(line), ..SceneError::whole(file, path, old, new) }.to_string())
@@ -265,11 +272,8 @@ impl Document {
     /// Returns an error of any form for the key at `path`.
     pub fn problem(&self, path: &str, problem: Problem) -> SceneError {
         // An override of a table covers its keys, and an overridden key the table that it creates.
-        let below = |long: &str, short: &str| {
-            long.strip_prefix(short).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-        };
-        let made = |key: &str| below(key, path) && self.locate(path).is_none();
-        let overridden = self.overrides.iter().any(|(key, _)| below(path, key) || made(key));
+        let made = |key: &str| is_below(key, path) && self.locate(path).is_none();
+        let overridden = self.overrides.iter().any(|(key, _)| is_below(path, key) || made(key));
         let (file, line) = match self.locate(path) {
             _ if overridden => (Path::new("--set"), None),
             Some((file, line)) => (file, Some(line)),
@@ -433,6 +437,11 @@ fn value_at<'t>(table: &'t DeTable<'_>, path: &[String]) -> Option<&'t DeValue<'
         };
     }
     Some(value)
+}
+
+/// Whether `path` is `table` or a key in it.
+fn is_below(path: &str, table: &str) -> bool {
+    path.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
 /// Line number (from 1) of a byte.
