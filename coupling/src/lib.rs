@@ -1,4 +1,4 @@
-//! DEM–FEM coupling: contact on moving solid surfaces, load transfer, coupled stepping, stability, track.
+//! DEM–FEM coupling: contact on moving solid surfaces, load transfer, coupled stepping, stability.
 //!
 //! Units are SI. Nodal arrays have the shape `[3·nodes]`.
 
@@ -15,5 +15,4 @@ pub mod step;
 pub mod surface;
 #[cfg(test)]
 mod testing;
-pub mod track;
 pub mod transfer;

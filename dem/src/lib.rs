@@ -3,30 +3,25 @@
 //! A [`Model`] is constant in a run, a [`State`] evolves, a [`Work`] is scratch; [`step()`] advances the
 //! state. SI units.
 //!
-//! Modules are layers, which import only from earlier ones: `base`, `lanes`, `shape`, `spatial`, `law`,
-//! `bodies`, `pairs`, `contact`, `integrate`, `body_force`, `bond`, `wall`, `engine`, `measure`, `stability`,
-//! `insert`, `device` (GPU), `ranks` (several processes).
+//! Modules are layers, which import only from earlier ones: `wall`, `engine`, `measure`, `stability`, `insert`,
+//! `device` (GPU), `ranks` (several processes); below them the crates `trackbed-kernels` (laws, loops) and
+//! `trackbed-geometry` (shapes, search).
 
-mod base;
-mod bodies;
-pub mod body_force;
-pub mod bond;
-mod contact;
 pub mod device;
 mod engine;
 pub mod insert;
-pub mod integrate;
-pub mod lanes;
-pub mod law;
 pub mod measure;
-mod pairs;
 pub mod ranks;
-pub mod shape;
-mod spatial;
 pub mod stability;
 #[cfg(test)]
 mod testing;
 pub mod wall;
+
+use trackbed_geometry::{base, spatial};
+use trackbed_kernels::{bodies, contact, pairs};
+
+pub use trackbed_geometry::{lanes, shape};
+pub use trackbed_kernels::{body_force, bond, integrate, law};
 
 pub use base::{Vec3, balance_terms, error, force_tracking, names, random};
 pub use bodies::input::BodyInput;

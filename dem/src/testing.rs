@@ -8,15 +8,7 @@ use crate::shape::clump::Clump;
 use crate::shape::plane::Plane;
 
 /// Soft frictional material.
-pub(crate) const SOFT: Material = Material {
-    density: 2600.0,
-    stiffness: 1e5,
-    tangential_ratio: 0.5,
-    tangential_damping_ratio: 0.0,
-    friction: 0.5,
-    restitution: 0.5,
-    ..Material::RIGID
-};
+pub(crate) const SOFT: Material = Material::SOFT;
 
 /// Dumbbells (shape 0), spheres (1) and a box (2) at half the critical time step.
 pub(crate) fn dumbbells(material: Material, half: [f64; 3]) -> ModelInput {

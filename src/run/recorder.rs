@@ -2,9 +2,9 @@
 
 use super::flow::Flow;
 use trackbed_coupling::energy_balance::EnergyBalance;
-use trackbed_coupling::track::Track;
 use trackbed_input::model::Job;
 use trackbed_io::write::csv::Row;
+use trackbed_track::Track;
 
 /// State of a run passed to recorders.
 pub struct Now<'a, S> {

@@ -1,12 +1,12 @@
 //! Track output: rails in frames, push curve.
 
 use std::path::Path;
-use trackbed_coupling::track::Track;
-use trackbed_coupling::track::push_test::PushTestSummary;
 use trackbed_io::columns::push;
 use trackbed_io::failure::Failure;
 use trackbed_io::write::csv::{Field, write_table};
 use trackbed_io::write::{WallFrame, WallKind};
+use trackbed_track::Track;
+use trackbed_track::push_test::PushTestSummary;
 
 const HALF_WIDTH: f64 = 0.035;
 

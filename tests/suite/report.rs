@@ -7,7 +7,7 @@ use base64::prelude::{BASE64_STANDARD, Engine};
 use quick_xml::events::Event;
 use std::fs;
 use std::path::Path;
-use trackbed_coupling::track::settlement::settlement_after;
+use trackbed_track::settlement::settlement_after;
 
 pub(super) struct Page {
     pub(super) sections: Vec<String>,

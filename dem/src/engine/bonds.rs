@@ -271,3 +271,7 @@ pub(crate) fn discard_separated(state: &mut State) -> bool {
     state.stale |= after < before;
     after < before
 }
+
+#[cfg(test)]
+#[path = "bonds_tests.rs"]
+mod tests;

@@ -2,7 +2,7 @@
 
 use super::grains::GrainsPart;
 use crate::scene::{Scene, SceneError, Table};
-use trackbed_coupling::track::CyclicLoad;
+use trackbed_track::CyclicLoad;
 
 /// Such a run would take years.
 const MOST: u64 = 1_000_000_000_000;

@@ -2,12 +2,12 @@
 
 use super::solid_probes::CycleStresses;
 use crate::system::System;
-use trackbed_coupling::track::CyclicLoad;
-use trackbed_coupling::track::cycles::{BedColumn, Cycle, CycleRecorder};
 use trackbed_dem as dem;
 use trackbed_input::model::Job;
 use trackbed_io::columns::cycles;
 use trackbed_io::write::csv::{Column, Row};
+use trackbed_track::CyclicLoad;
+use trackbed_track::cycles::{BedColumn, Cycle, CycleRecorder};
 
 /// Creates the recorder of load cycles.
 pub fn recorder<S: System>(job: &Job, system: &S, load: &CyclicLoad) -> CycleRecorder {

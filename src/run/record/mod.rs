@@ -22,13 +22,13 @@ use solid_probes::CycleStresses;
 use std::io;
 use std::path::{Path, PathBuf};
 use trackbed_coupling::energy_balance::EnergyBalance;
-use trackbed_coupling::track::cycle_jump::{CycleJumper, JumpSummary};
-use trackbed_coupling::track::cycles::{Cycle, CycleRecorder};
-use trackbed_coupling::track::{Track, settlement};
 use trackbed_input::model::Job;
 use trackbed_io::failure::Failure;
 use trackbed_io::write::csv::{Column, History, Mark, Row};
 use trackbed_io::write::{self, WallFrame, WriteError, Writers};
+use trackbed_track::cycle_jump::{CycleJumper, JumpSummary};
+use trackbed_track::cycles::{Cycle, CycleRecorder};
+use trackbed_track::{Track, settlement};
 
 /// Output files of a run.
 pub struct Results<'a> {
@@ -369,7 +369,12 @@ impl Course {
         balance.spent = system.spent();
         balance.spent.jumps = self.jump_energy;
         balance.reference = system.reference_energy();
-        track.add_energy(&mut balance.now, &mut balance.spent);
+        let rail = track.rail_energy();
+        balance.now.rail += rail.kinetic + rail.elastic;
+        balance.spent.wheels += rail.wheels;
+        balance.spent.pads_on_sleepers += rail.on_seats;
+        balance.spent.pads += rail.pads;
+        balance.spent.far_field_track += rail.beyond;
     }
 
     fn settle<S: System>(&mut self, time: f64, system: &S, track: &Track<'_>) {

@@ -2,9 +2,9 @@
 
 use super::Results;
 use crate::specimen::Point;
-use trackbed_coupling::track::cycles::Cycle;
 use trackbed_io::failure::Failure;
 use trackbed_io::write::svg::{LinePlot, Series};
+use trackbed_track::cycles::Cycle;
 
 impl Results<'_> {
     /// Draws settlement curves.

@@ -1,7 +1,7 @@
 //! Output intervals of a run.
 
-use trackbed_coupling::track::CyclicLoad;
 use trackbed_input::model::{Job, OutputPlan};
+use trackbed_track::CyclicLoad;
 
 const CHECKS: f64 = 1000.0;
 

@@ -13,7 +13,6 @@ use std::sync::Arc;
 use trackbed_coupling as coupling;
 use trackbed_coupling::scheme::Scheme;
 use trackbed_coupling::surface::SolidSurface;
-use trackbed_coupling::track::CyclicLoad;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
 use trackbed_input::model::Job;
@@ -22,6 +21,7 @@ use trackbed_input::model::solid::SolidPart;
 use trackbed_io::failure::Failure;
 use trackbed_io::message;
 use trackbed_io::progress::{Progress, Verbosity};
+use trackbed_track::CyclicLoad;
 
 /// Static equilibrium with grains at rest.
 pub struct Equilibrium;

@@ -11,13 +11,13 @@ use crate::runout;
 use crate::summary::NewtonRecord;
 use crate::system::{GrainsSystem, System};
 use crate::validity::{grains_below_walls, load_near_mode, lost_bodies, small_strain};
-use trackbed_coupling::track::TrackSystem;
 use trackbed_fem as fem;
 use trackbed_input::model::Job;
 use trackbed_input::model::solid::Analysis;
 use trackbed_io::failure::Failure;
 use trackbed_io::message;
 use trackbed_io::progress::Verbosity;
+use trackbed_track::TrackSystem;
 
 /// Main loop with loads, flow and push.
 pub struct MainLoop;

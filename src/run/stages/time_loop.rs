@@ -21,12 +21,12 @@ use crate::validity::{
     Check, Fall, applied_loads, bond_rotation, free_sleeper, load_error, scaled_inertia, stiffness_drift,
 };
 use serde::{Deserialize, Serialize};
-use trackbed_coupling::track::cycles::Cycle;
-use trackbed_coupling::track::{Track, TrackInput};
 use trackbed_dem as dem;
 use trackbed_input::model::grains::GrainsPart;
 use trackbed_io::failure::Failure;
 use trackbed_io::progress::{Progress, Verbosity};
+use trackbed_track::cycles::Cycle;
+use trackbed_track::{Track, TrackInput};
 
 /// Initial state of the grains.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]

@@ -14,10 +14,10 @@ use super::specimen::SpecimenRecord;
 use super::validity::{Check, LoadCheck};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use trackbed_coupling::track::extremes::TrackRecord;
-use trackbed_coupling::track::push_test::PushTestSummary;
 use trackbed_io::failure::Failure;
 use trackbed_io::write::WriteError;
+use trackbed_track::extremes::TrackRecord;
+use trackbed_track::push_test::PushTestSummary;
 
 /// Content of `summary.json`, in this order.
 #[derive(Debug, Default, Serialize)]

@@ -7,11 +7,11 @@ use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
 use trackbed_coupling::interface_stability::InterfaceStabilityNumbers;
 use trackbed_coupling::scheme::{IterationStats, Scheme};
 use trackbed_coupling::stability::ContactStabilityNumbers;
-use trackbed_coupling::track::cycle_jump::JumpSummary;
-use trackbed_coupling::track::settlement::Fit;
 use trackbed_coupling::transfer::TransferAudit;
 use trackbed_fem::nonlinear::Statistics;
 use trackbed_input::model::exchange::ContactClass;
+use trackbed_track::cycle_jump::JumpSummary;
+use trackbed_track::settlement::Fit;
 
 /// Stage of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -6,12 +6,12 @@ use crate::device::{Steps, failed};
 use std::io;
 use trackbed_coupling as coupling;
 use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
-use trackbed_coupling::track::{CyclicLoad, MeshedSleeper, TrackSystem};
 use trackbed_dem as dem;
 use trackbed_dem::BackEnd;
 use trackbed_fem as fem;
 use trackbed_input::model::solid::SleeperBodies;
 use trackbed_io::failure::Failure;
+use trackbed_track::{CyclicLoad, MeshedSleeper, TrackSystem};
 
 /// Meshed sleepers in a running system.
 pub struct Meshed<'a> {

@@ -7,10 +7,10 @@ use crate::ranks::Sharing;
 use std::io;
 use trackbed_coupling as coupling;
 use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
-use trackbed_coupling::track::TrackSystem;
 use trackbed_dem as dem;
 use trackbed_dem::BackEnd;
 use trackbed_io::failure::Failure;
+use trackbed_track::TrackSystem;
 
 /// DEM-only system.
 pub struct GrainsSystem {

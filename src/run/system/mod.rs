@@ -7,15 +7,15 @@ mod solid;
 pub use coupled::{CoupledSystem, Meshed};
 pub use grains::GrainsSystem;
 pub use solid::{SolidKind, SolidSystem};
-pub use trackbed_coupling::track::GrainsView;
+pub use trackbed_track::GrainsView;
 
 use super::checkpoint::Body;
 use std::io;
 use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
-use trackbed_coupling::track::TrackSystem;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
 use trackbed_io::failure::Failure;
+use trackbed_track::TrackSystem;
 
 /// Forces on bodies at a time.
 pub type Applied<'a> = &'a mut dyn FnMut(f64, &dem::Model, &dem::State, &mut Vec<dem::AppliedForce>);

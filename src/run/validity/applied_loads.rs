@@ -3,9 +3,9 @@
 use super::{Check, Limits};
 use crate::system::GrainsView;
 use serde::Serialize;
-use trackbed_coupling::track::Track;
 use trackbed_dem::{AppliedLoad, LoadRange, Vec3};
 use trackbed_input::model::grains::GrainsPart;
+use trackbed_track::Track;
 
 /// Error over the amplitude of the target.
 const ERROR: Limits = Limits { warn: 0.02, fail: Some(0.1) };

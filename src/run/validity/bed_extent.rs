@@ -1,10 +1,10 @@
 //! Box around a bed, and measurement boxes that reach beyond it.
 
 use super::{Check, Limits};
-use trackbed_coupling::track::GrainsView;
 use trackbed_dem::measure::BoxRegion;
 use trackbed_dem::{Vec3, WallInput, WallShape};
 use trackbed_input::model::grains::GrainsPart;
+use trackbed_track::GrainsView;
 
 /// Volume beyond the bed over box volume.
 const BEYOND: Limits = Limits { warn: 0.02, fail: None };

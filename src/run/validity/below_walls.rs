@@ -1,10 +1,10 @@
 //! Check for grains fallen below all walls.
 
 use super::{Check, Limits};
-use trackbed_coupling::track::GrainsView;
 use trackbed_dem::measure::{Fragments, fragments};
 use trackbed_dem::{State, Vec3, WallShape};
 use trackbed_input::model::grains::GrainsPart;
+use trackbed_track::GrainsView;
 
 /// No failure: runs may lose grains intentionally.
 const LOST: Limits = Limits { warn: 0.01, fail: None };

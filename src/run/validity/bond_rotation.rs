@@ -1,8 +1,8 @@
 //! Check for bond rotations beyond linear springs.
 
 use super::{Check, Limits};
-use trackbed_coupling::track::GrainsView;
 use trackbed_dem::measure::largest_rotation;
+use trackbed_track::GrainsView;
 
 /// Rotation [rad]: linear springs err by 2 % at the first limit, by half at the second.
 const ROTATION: Limits = Limits { warn: 0.3, fail: Some(1.5) };

@@ -1,7 +1,7 @@
 //! Check for unsupported sleepers.
 
 use super::{Check, Limits};
-use trackbed_coupling::track::extremes::TrackRecord;
+use trackbed_track::extremes::TrackRecord;
 
 /// Time without contact over main-stage time; wheels uplift neighbours.
 const FREE: Limits = Limits { warn: 0.1, fail: Some(0.9) };
@@ -23,7 +23,7 @@ pub fn free_sleeper(track: &TrackRecord, duration: f64) -> Option<Check> {
 mod tests {
     use super::*;
     use crate::validity::Outcome;
-    use trackbed_coupling::track::extremes::{ContactLoss, SleeperRecord};
+    use trackbed_track::extremes::{ContactLoss, SleeperRecord};
 
     #[test]
     fn a_hovering_sleeper_is_found() {

@@ -1,7 +1,7 @@
 //! Check for bodies below the solid surface.
 
 use super::{Check, Limits};
-use trackbed_coupling::track::GrainsView;
+use trackbed_track::GrainsView;
 
 /// Lost over all bodies.
 const LOST: Limits = Limits { warn: 0.01, fail: Some(0.5) };

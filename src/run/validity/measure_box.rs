@@ -2,8 +2,8 @@
 
 use super::bed_surface::BedSurface;
 use super::{Check, Limits};
-use trackbed_coupling::track::GrainsView;
 use trackbed_dem::measure::BoxRegion;
+use trackbed_track::GrainsView;
 
 /// Height above the surface over box height.
 const EMPTY: Limits = Limits { warn: 0.0, fail: None };

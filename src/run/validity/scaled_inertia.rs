@@ -1,7 +1,7 @@
 //! Check of mass scaling (`time.mass_factor`), valid if quasi-static.
 
 use super::{Check, Limits};
-use trackbed_coupling::track::GrainsView;
+use trackbed_track::GrainsView;
 
 /// Kinetic energy over the smaller of reference energy and weight times grain radius.
 const INERTIA: Limits = Limits { warn: 0.05, fail: Some(0.25) };

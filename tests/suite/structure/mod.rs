@@ -13,9 +13,12 @@ use std::path::{Path, PathBuf};
 
 const LONGEST: usize = 80;
 
-const CRATES: [&str; 8] = [
+const CRATES: [&str; 11] = [
+    "dem/geometry/lib.rs",
+    "dem/kernels/lib.rs",
     "dem/src/lib.rs",
     "fem/src/lib.rs",
+    "coupling/track/lib.rs",
     "coupling/src/lib.rs",
     "src/io/lib.rs",
     "src/input/lib.rs",

@@ -4,11 +4,11 @@ use super::trains;
 use crate::model::tables;
 use crate::scene::track::{RailKind, RailTable, SeatLoad, SeatLoadKind, SeatingTable, TrackTable};
 use crate::scene::{Number, SceneError, Table, kinds};
-use trackbed_coupling::track::influence::Winkler;
-use trackbed_coupling::track::load::{AxleSpread, CyclicLoad, Pass, Seating, Waveform};
-use trackbed_coupling::track::rail::RailInput;
-use trackbed_coupling::track::train;
 use trackbed_io::failure::Failure;
+use trackbed_track::influence::Winkler;
+use trackbed_track::load::{AxleSpread, CyclicLoad, Pass, Seating, Waveform};
+use trackbed_track::rail::RailInput;
+use trackbed_track::train;
 
 /// Spacings over which a wheel load is ramped at the rail ends.
 const TAPER: f64 = 2.0;

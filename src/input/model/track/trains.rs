@@ -4,7 +4,7 @@ use crate::scene::units::{Force, Length, Quantity};
 use crate::scene::{self, Document, SceneError};
 use serde::Deserialize;
 use std::path::Path;
-use trackbed_coupling::track::train::CarLayout;
+use trackbed_track::train::CarLayout;
 
 /// Car with two two-axle bogies.
 #[derive(Clone, Debug, Deserialize)]

@@ -1,7 +1,7 @@
 //! Settlement laws of the summary.
 
 use serde_json::Value;
-use trackbed_coupling::track::settlement::settlement_after;
+use trackbed_track::settlement::settlement_after;
 
 const POINTS: usize = 120;
 
@@ -61,7 +61,7 @@ impl Law {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use trackbed_coupling::track::settlement;
+    use trackbed_track::settlement;
 
     #[test]
     fn law_curves_match_fits() {

@@ -9,7 +9,6 @@ use crate::initial;
 use loading::SolidLoading;
 use std::io;
 use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
-use trackbed_coupling::track::TrackSystem;
 use trackbed_fem as fem;
 use trackbed_fem::newmark::{self, NewmarkSolver};
 use trackbed_fem::nonlinear::dynamics::{self, NonlinearNewmark};
@@ -17,6 +16,7 @@ use trackbed_fem::nonlinear::{QuasiStatic, SolverState, Statistics, StepControl,
 use trackbed_fem::{SolveError, State, TimeIntegrator};
 use trackbed_input::model::solid::{Analysis, QuasiStaticPlan, SolidPart, TimeMethod};
 use trackbed_io::failure::Failure;
+use trackbed_track::TrackSystem;
 
 const SMALLEST_PART: f64 = 1.0 / 256.0;
 

@@ -4,10 +4,10 @@ use super::part::{AfterPlan, TrackPart};
 use crate::scene::after::{CycleJump, JumpMethod, Push};
 use crate::scene::track::TrackTable;
 use crate::scene::{SceneError, Table};
-use trackbed_coupling::track::CyclicLoad;
-use trackbed_coupling::track::cycle_jump::CycleJumpOptions;
-use trackbed_coupling::track::push_test::PushTestOptions;
 use trackbed_dem::Vec3;
+use trackbed_track::CyclicLoad;
+use trackbed_track::cycle_jump::CycleJumpOptions;
+use trackbed_track::push_test::PushTestOptions;
 
 /// `fixed`: reason why a jump cannot move grains.
 ///

@@ -10,11 +10,11 @@ use super::groups::GroupsPart;
 use crate::model::track::plan::{self, RailPlan};
 use crate::model::track::sleeper;
 use crate::scene::{Scene, Table};
-use trackbed_coupling::track::SleeperRow;
-use trackbed_coupling::track::rail::RailInput;
 use trackbed_dem::Vec3;
 use trackbed_dem::shape::Shape;
 use trackbed_io::failure::Failure;
+use trackbed_track::SleeperRow;
+use trackbed_track::rail::RailInput;
 
 /// Rigid sleepers add a shape and a group. `fixed`: reason why a jump cannot move grains. Rows of sleepers
 /// have `mass_factor` times the true mass.

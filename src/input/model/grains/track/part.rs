@@ -1,11 +1,11 @@
 //! Sleepers, rail, and loads.
 
 use crate::scene::{Document, SceneError};
-use trackbed_coupling::track::CyclicLoad;
-use trackbed_coupling::track::cycle_jump::CycleJumpOptions;
-use trackbed_coupling::track::push_test::PushTestOptions;
-use trackbed_coupling::track::rail::RailInput;
-use trackbed_coupling::track::{SleeperRow, TrackInput};
+use trackbed_track::CyclicLoad;
+use trackbed_track::cycle_jump::CycleJumpOptions;
+use trackbed_track::push_test::PushTestOptions;
+use trackbed_track::rail::RailInput;
+use trackbed_track::{SleeperRow, TrackInput};
 
 /// The track of a scene.
 #[derive(Clone, Default)]

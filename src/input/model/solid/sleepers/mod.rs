@@ -10,11 +10,11 @@ use crate::model::track::sleeper::MeshedSleepers;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use trackbed_coupling::surface::SolidSurface;
-use trackbed_coupling::track::SleeperMotion;
 use trackbed_fem as fem;
 use trackbed_fem::ElementKind;
 use trackbed_fem::material::Material;
 use trackbed_fem::mesh::{Constraint, Mesh};
+use trackbed_track::SleeperMotion;
 
 /// Tolerance relative to sleeper length.
 const ON_PLANE: f64 = 1e-9;
