@@ -25,9 +25,7 @@ const MASS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
 /// Input errors; missing modes.
 pub fn modal(args: &ModalArgs) -> Result<String, Failure> {
     let mut document = Document::open(&args.scene)?;
-    for assignment in &args.set {
-        document.set(assignment)?;
-    }
+    document.set_all(&args.set)?;
     let scene = read_scene(&document)?;
     let Some(part) = &scene.solid else {
         return Err(document.error("solid", "nothing", "a solid").into());

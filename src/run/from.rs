@@ -151,7 +151,7 @@ fn earlier(
     let place =
         RunFile::read(dir).map_or_else(|| document.file().to_path_buf(), |run| PathBuf::from(run.scene));
     let old = Document::parse(&place, before.scene.clone()).ok().and_then(|mut old| {
-        before.overrides.iter().try_for_each(|o| old.set(o)).ok()?;
+        old.set_all(&before.overrides).ok()?;
         Some(old.keys())
     });
     old.ok_or_else(|| Difference {

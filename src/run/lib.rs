@@ -119,9 +119,7 @@ pub enum Outcome {
 /// Input errors, before any output; numerical failures, interrupts.
 pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     let mut document = Document::open(scene)?;
-    for assignment in &options.set {
-        document.set(assignment)?;
-    }
+    document.set_all(&options.set)?;
     let parsed = model::read_scene(&document)?;
     let pool = thread_pool(options.threads)?;
     let dir = options.out.clone().unwrap_or_else(|| default_folder(scene, &options.set));

@@ -105,7 +105,7 @@ pub fn check(ranked: &Ranked, place: Place, job: &Job) -> Result<(), Failure> {
 pub fn follow(scene: &Path, set: &[String], threads: Option<usize>, link: Box<dyn Link>) -> Result<(), Lost> {
     let resolved = || -> Result<(rayon::ThreadPool, Job), Failure> {
         let mut document = Document::open(scene)?;
-        set.iter().try_for_each(|assignment| document.set(assignment))?;
+        document.set_all(set)?;
         let parsed = model::read_scene(&document)?;
         let pool = thread_pool(threads)?;
         let job = pool.install(|| model::resolve(&document, &parsed))?;

@@ -90,7 +90,7 @@ impl RunFile {
     pub fn document(&self) -> Option<Document> {
         let scene = Path::new(&self.scene);
         let mut document = Document::with_included(scene, self.text.clone(), self.included.clone()).ok()?;
-        self.overrides.iter().try_for_each(|o| document.set(o)).ok()?;
+        document.set_all(&self.overrides).ok()?;
         Some(document)
     }
 }

@@ -138,8 +138,9 @@ fn prepare(
     let mut refused: Vec<(&str, String)> = Vec::new();
     let mut hashes = Vec::new();
     let mut checked = None;
+    let scene = Document::open(&plan.scene)?;
     for (k, run) in plan.runs.iter().enumerate() {
-        let hash = scene_hash(&plan.scene, &run.set);
+        let hash = scene_hash(&scene, &run.set);
         // One seed per set is enough.
         let needed = ours(options, k) && !options.merge && checked != Some(run.setting);
         let verdict = hash.and_then(|hash| {
@@ -177,9 +178,9 @@ fn refusal(document: &Document, refused: &[(&str, String)]) -> Failure {
     Failure::Input(format!("{file}: {} runs rejected: {}", refused.len(), texts.join("; ")))
 }
 
-fn scene_hash(scene: &Path, set: &[String]) -> Result<String, Failure> {
-    let mut document = Document::open(scene)?;
-    set.iter().try_for_each(|assignment| document.set(assignment))?;
+fn scene_hash(scene: &Document, set: &[String]) -> Result<String, Failure> {
+    let mut document = scene.clone();
+    document.set_all(set)?;
     let parsed = read_scene(&document)?;
     Ok(run::scene_hash(&document, &parsed))
 }

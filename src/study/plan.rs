@@ -8,7 +8,7 @@ use super::parameter;
 use super::quantity::{self, Quantity};
 use super::target::{self, Target};
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use trackbed_input::scene::{Document, Problem, Scene, SceneError};
 use trackbed_io::failure::Failure;
 
@@ -80,10 +80,11 @@ impl Plan {
         let title =
             if file.title.is_empty() { format!("{}", file.scene.display()) } else { file.title.clone() };
         let cases = cases(document, file)?;
+        let opened = Document::open(&scene).map_err(|e| of_setting(document, "base", &e))?;
         let Cases { axes, factors, coordinates, settings, reference, combine } = cases;
-        let runs = runs(document, file, &scene, &settings)?;
+        let runs = runs(document, file, &opened, &settings)?;
         let cycles =
-            scene_has_cycles(&scene, &file.base.set).map_err(|e| of_setting(document, "base", &e))?;
+            scene_has_cycles(&opened, &file.base.set).map_err(|e| of_setting(document, "base", &e))?;
         let quantities = quantity::resolve(document, &file.quantity, cycles, tolerance)?;
         if combine.is_none() {
             quantity::reject_errors(document, &file.quantity)?;
@@ -186,7 +187,7 @@ fn reference(
 fn runs(
     document: &Document,
     file: &StudyFile,
-    scene: &Path,
+    scene: &Document,
     settings: &[Setting],
 ) -> Result<Vec<Run>, Failure> {
     let seeds = match &file.seeds {
@@ -232,9 +233,9 @@ fn runs(
 }
 
 /// Seeds of grain groups and every other `seed`.
-fn seed_keys(scene: &Path, setting: &Setting) -> Result<Vec<String>, SceneError> {
-    let mut document = Document::open(scene)?;
-    setting.set.iter().try_for_each(|assignment| document.set(assignment))?;
+fn seed_keys(scene: &Document, setting: &Setting) -> Result<Vec<String>, SceneError> {
+    let mut document = scene.clone();
+    document.set_all(&setting.set)?;
     let tree: toml::Table = document.read()?;
     let mut keys = BTreeSet::new();
     for (key, value) in &tree {
@@ -262,9 +263,9 @@ pub fn of_setting(document: &Document, label: &str, fault: &impl std::fmt::Displ
     Failure::Input(format!("{}: \"{label}\": {fault}", document.file().display()))
 }
 
-fn scene_has_cycles(scene: &Path, set: &[String]) -> Result<bool, SceneError> {
-    let mut document = Document::open(scene)?;
-    set.iter().try_for_each(|assignment| document.set(assignment))?;
+fn scene_has_cycles(scene: &Document, set: &[String]) -> Result<bool, SceneError> {
+    let mut document = scene.clone();
+    document.set_all(set)?;
     let scene: Scene = document.read()?;
     Ok(scene.track.is_some_and(|track| track.load.is_some()))
 }

@@ -49,7 +49,7 @@ fn all(
         let last = faults.last().expect("the first one");
         let mended = mendings(document, last).into_iter().find_map(|mending| {
             let mut trial = rest.clone();
-            mending.iter().try_for_each(|assignment| trial.set(assignment)).ok()?;
+            trial.set_all(&mending).ok()?;
             match again(&trial) {
                 Err(Failure::Faults(next)) if next.iter().all(|n| is_new(document, &faults, n)) => {
                     Some((trial, next))

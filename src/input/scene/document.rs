@@ -106,73 +106,56 @@ impl Document {
         Ok(())
     }
 
-    /// Sets one key, given as `key.path=value`. An empty value removes the key; a value that is not TOML is a
-    /// string. Tables of an array are addressed by index or name: `solid.material.clay.young=2e7`. `include`
-    /// replaces the included files.
+    /// Sets one key; see [`Document::set_all`].
+    ///
+    /// # Errors
+    /// As [`Document::set_all`].
+    pub fn set(&mut self, assignment: &str) -> Result<(), SceneError> {
+        self.set_all(&[assignment.to_string()])
+    }
+
+    /// Sets keys, given as `key.path=value`, in order. An empty value removes the key; a value that is not TOML
+    /// is a string. Tables of an array are addressed by index or name: `solid.material.clay.young=2e7`.
+    /// `include` replaces the included files.
     ///
     /// # Errors
     /// No `=`, a path through a value, an unreadable file.
-    pub fn set(&mut self, assignment: &str) -> Result<(), SceneError> {
-        let Some((path, value)) = assignment.split_once('=') else {
-            return Err(override_error(assignment, assignment, "key.path=value"));
-        };
-        let (path, value) = (self.current(self.numbered(path.trim())), value.trim().to_string());
-        self.apply(self.tree().get_mut(), &path, &value)?;
-        let includes = path == include::KEY;
-        self.has_earlier_names |= [assignment, &value].into_iter().any(replaced::occurs_in);
-        self.overrides.push((path, value));
-        self.given.push(assignment.to_string());
-        if includes {
-            self.include_others()?;
-        }
-        Ok(())
-    }
-
-    /// Names are resolved again: their indices may differ in the new files.
-    fn include_others(&mut self) -> Result<(), SceneError> {
-        self.include()?;
-        self.overrides.retain(|(path, _)| path == include::KEY);
-        let mut given = std::mem::take(&mut self.given);
-        for assignment in &given {
-            let (path, value) = assignment.split_once('=').expect("seen when it was set");
-            let (path, value) = (self.current(self.numbered(path.trim())), value.trim().to_string());
-            if path != include::KEY {
-                self.apply(self.tree().get_mut(), &path, &value)?;
-                self.overrides.push((path, value));
+    pub fn set_all(&mut self, assignments: &[String]) -> Result<(), SceneError> {
+        let files = |path: &str| path == include::KEY;
+        if assignments.iter().any(|a| a.split_once('=').is_some_and(|(path, _)| files(path.trim()))) {
+            // Names are resolved again: their indices may differ in the new files.
+            let all: Vec<String> = self.given.iter().chain(assignments).cloned().collect();
+            let (of_files, others): (Vec<String>, Vec<String>) =
+                all.into_iter().partition(|a| a.split_once('=').is_some_and(|(path, _)| files(path.trim())));
+            self.overrides.clear();
+            self.given.clone_from(&of_files);
+            for assignment in &of_files {
+                let value = assignment.split_once('=').expect("seen above").1.trim();
+                self.overrides.push((include::KEY.into(), value.to_string()));
             }
+            self.include()?;
+            return self.set_all(&others);
         }
-        self.given.append(&mut given);
+        self.has_earlier_names |= assignments.iter().any(|a| replaced::occurs_in(a));
+        let mut set = Vec::new();
+        let mut tree = self.tree();
+        for assignment in assignments {
+            let Some((path, value)) = assignment.split_once('=') else {
+                return Err(override_error(assignment, assignment, "key.path=value"));
+            };
+            let path = current(tree.get_ref(), numbered(tree.get_ref(), path.trim()));
+            self.apply(tree.get_mut(), &path, value.trim())?;
+            if self.has_earlier_names {
+                renames::apply(tree.get_mut(), &mut Vec::new());
+            }
+            set.push((path, value.trim().to_string()));
+        }
+        self.overrides.append(&mut set);
+        self.given.extend_from_slice(assignments);
         Ok(())
     }
 
-    fn numbered(&self, path: &str) -> String {
-        let tree = self.tree();
-        let (mut table, mut array) = (Some(tree.get_ref()), None::<&DeArray>);
-        let mut parts: Vec<String> = path.split('.').map(String::from).collect();
-        for part in &mut parts {
-            let value = if let Some(t) = table {
-                t.get(part.as_str())
-            } else if let Some(rows) = array {
-                let named = |row: &&Spanned<DeValue>| {
-                    let name = row.get_ref().as_table().and_then(|t| t.get("name"));
-                    name.and_then(|n| n.get_ref().as_str()) == Some(part.as_str())
-                };
-                // Indices take precedence over names.
-                let index = part.parse().ok().or_else(|| rows.iter().position(|row| named(&row)));
-                if let Some(index) = index {
-                    *part = index.to_string();
-                }
-                index.and_then(|index| rows.get(index))
-            } else {
-                None
-            };
-            table = value.and_then(|v| v.get_ref().as_table());
-            array = value.and_then(|v| v.get_ref().as_array());
-        }
-        parts.join(".")
-    }
-
-    fn apply<'a>(&self, root: &mut DeTable<'a>, path: &'a str, value: &'a str) -> Result<(), SceneError> {
+    fn apply<'a>(&self, root: &mut DeTable<'a>, path: &str, value: &'a str) -> Result<(), SceneError> {
         let end = self.end();
         let span = end..end;
         let parsed = match DeValue::parse(value) {
@@ -185,7 +168,7 @@ impl Document {
         while let Some(key) = parts.next() {
             if !table.contains_key(key) {
                 table.insert(
-                    Spanned::new(span.clone(), key.into()),
+                    Spanned::new(span.clone(), key.to_string().into()),
                     Spanned::new(span.clone(), DeValue::Table(DeTable::new())),
                 );
             }
@@ -212,7 +195,7 @@ impl Document {
         if value.is_empty() {
             return Ok(());
         }
-        table.insert(Spanned::new(span.clone(), last.into()), Spanned::new(span, parsed));
+        table.insert(Spanned::new(span.clone(), last.to_string().into()), Spanned::new(span, parsed));
         Ok(())
     }
 
@@ -237,7 +220,7 @@ impl Document {
     /// Returns a note for each key or value that has an earlier name.
     pub fn renamed(&self) -> Vec<String> {
         let mut done = Vec::new();
-        self.renamed_tree(&mut done);
+        let tree = self.renamed_tree(&mut done);
         let hidden = |path: &str| self.overrides.iter().any(|(key, _)| is_below(path, key));
         let notes = done.iter().filter_map(|Rename { path, span, old, new }| match self.line(span) {
             Some((file, line)) if !hidden(path) => {
@@ -247,21 +230,13 @@ impl Document {
             None => Some(override_error(path, old, new).to_string()),
         });
         let given = self.given.iter().filter_map(|assignment| {
-            let path = self.numbered(assignment.split_once('=')?.0.trim());
+            let path = numbered(tree.get_ref(), assignment.split_once('=')?.0.trim());
             let (new, old) = (replaced::key(&path)?, path.rsplit('.').next()?);
             Some(override_error(&path, &format!("`{old}`"), &format!("`{new}`")).to_string())
         });
         let mut all: Vec<String> = notes.chain(given).collect();
         all.dedup();
         all
-    }
-
-    /// Path of an override with the current name of its key, unless the earlier one is present.
-    fn current(&self, path: String) -> String {
-        match (replaced::key(&path), path.rsplit_once('.')) {
-            (Some(new), Some((table, _))) if !self.has(&path) => format!("{table}.{new}"),
-            _ => path,
-        }
     }
 
     /// Returns an error with its line for the key at `path`.
@@ -401,6 +376,39 @@ impl Document {
         }
         if span == (0..0) { None } else { self.line(&span) }
     }
+}
+
+/// Path with indices in place of names of tables; indices take precedence.
+fn numbered(tree: &DeTable<'_>, path: &str) -> String {
+    let (mut table, mut array) = (Some(tree), None::<&DeArray>);
+    let mut parts: Vec<String> = path.split('.').map(String::from).collect();
+    for part in &mut parts {
+        let value = if let Some(t) = table {
+            t.get(part.as_str())
+        } else if let Some(rows) = array {
+            let named = |row: &&Spanned<DeValue>| {
+                let name = row.get_ref().as_table().and_then(|t| t.get("name"));
+                name.and_then(|n| n.get_ref().as_str()) == Some(part.as_str())
+            };
+            let index = part.parse().ok().or_else(|| rows.iter().position(|row| named(&row)));
+            if let Some(index) = index {
+                *part = index.to_string();
+            }
+            index.and_then(|index| rows.get(index))
+        } else {
+            None
+        };
+        table = value.and_then(|v| v.get_ref().as_table());
+        array = value.and_then(|v| v.get_ref().as_array());
+    }
+    parts.join(".")
+}
+
+/// Path of an override with the current name of its key, unless the earlier one is present.
+fn current(tree: &DeTable<'_>, path: String) -> String {
+    let Some((new, (table, _))) = replaced::key(&path).zip(path.rsplit_once('.')) else { return path };
+    let parts: Vec<String> = path.split('.').map(String::from).collect();
+    if value_at(tree, &parts).is_some() { path } else { format!("{table}.{new}") }
 }
 
 pub(super) fn syntax(file: &Path, text: &str, start: usize) -> Result<(), SceneError> {

@@ -42,9 +42,7 @@ impl Source {
     /// Input errors.
     pub fn document(&self) -> Result<Document, Failure> {
         let mut document = Document::open(&self.file)?;
-        for assignment in &self.set {
-            document.set(assignment)?;
-        }
+        document.set_all(&self.set)?;
         Ok(document)
     }
 

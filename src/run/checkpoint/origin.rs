@@ -59,7 +59,7 @@ impl Origin {
         }
         let wrong = "the scene has changed since the checkpoint";
         let before = Document::parse(document.file(), old.scene.clone()).ok().and_then(|mut d| {
-            old.overrides.iter().try_for_each(|o| d.set(o)).ok()?;
+            d.set_all(&old.overrides).ok()?;
             Some(d.keys())
         });
         if let Some(before) = before {
