@@ -7,6 +7,7 @@
 //! ten times slower; this excludes closures, `map` and `from_fn`.
 
 #[cfg(not(all(target_arch = "x86_64", not(feature = "portable"))))]
+#[doc(hidden)]
 mod plain;
 mod portable;
 mod prefetch;
@@ -22,7 +23,7 @@ mod wide;
 #[doc(hidden)]
 mod x86;
 
-pub use machine::{Simd, run};
+pub use machine::{Simd, run, run_native};
 #[cfg(not(all(target_arch = "x86_64", not(feature = "portable"))))]
 use plain as machine;
 pub use portable::Portable;

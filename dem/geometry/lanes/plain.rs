@@ -21,6 +21,11 @@ impl Simd {
         Simd::Portable
     }
 
+    /// Whether contact loops are compiled for any law only.
+    pub fn any_law_only(self) -> bool {
+        false
+    }
+
     pub fn name(self) -> &'static str {
         "four at a time (plain arrays)"
     }
@@ -29,6 +34,12 @@ impl Simd {
 #[inline]
 pub fn run<K: Kernel>(_: Simd, kernel: K) -> K::Output {
     kernel.run::<Portable>()
+}
+
+/// As [`run`].
+#[inline]
+pub fn run_native<K: Kernel>(simd: Simd, kernel: K) -> K::Output {
+    run(simd, kernel)
 }
 
 /// Left to the CPU.

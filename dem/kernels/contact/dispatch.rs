@@ -11,7 +11,7 @@ use crate::bodies::block::Block;
 use crate::bodies::block_bodies::BlockBodies;
 use crate::bodies::block_slice::BlockSlice;
 use crate::bodies::sums::{BlockTotals, ForceTorque};
-use crate::lanes::{self, Simd};
+use crate::lanes::{self, Kernel, Portable, Simd};
 use crate::law::with_law;
 use crate::pairs::cross::{Cross, CrossForces, Shares, Slots};
 use crate::pairs::groups::Groups;
@@ -23,12 +23,29 @@ macro_rules! build {
 }
 
 macro_rules! select {
-    ($rigid:expr, $turning:expr, $loop:ident, $simd:expr, $fields:tt) => {
+    ($rigid:expr, $turning:expr, $loop:ident, $run:path, $simd:expr, $fields:tt) => {
         match ($rigid, $turning) {
-            (false, false) => lanes::run($simd, build!($loop, false, false, $fields)),
-            (false, true) => lanes::run($simd, build!($loop, false, true, $fields)),
-            (true, false) => lanes::run($simd, build!($loop, true, false, $fields)),
-            (true, true) => lanes::run($simd, build!($loop, true, true, $fields)),
+            (false, false) => $run($simd, build!($loop, false, false, $fields)),
+            (false, true) => $run($simd, build!($loop, false, true, $fields)),
+            (true, false) => $run($simd, build!($loop, true, false, $fields)),
+            (true, true) => $run($simd, build!($loop, true, true, $fields)),
+        }
+    };
+}
+
+/// Runs a kernel by plain arrays: old processors have one kernel for all laws, with the same bits.
+#[inline(never)]
+fn run_any<K: Kernel>(_: Simd, kernel: K) -> K::Output {
+    kernel.run::<Portable>()
+}
+
+macro_rules! of_law {
+    ($laws:ident, $rigid:expr, $turning:expr, $loop:ident, $simd:expr, $fields:tt) => {
+        if $simd.any_law_only() {
+            let $laws = &$laws.any;
+            select!($rigid, $turning, $loop, run_any, $simd, $fields)
+        } else {
+            with_law!($laws, $laws => select!($rigid, $turning, $loop, lanes::run_native, $simd, $fields))
         }
     };
 }
@@ -44,9 +61,7 @@ pub fn between(
     out: &mut CrossForces,
 ) {
     let turning = lists.spheres.turning;
-    with_law!(laws, laws => {
-        select!(clumps, turning, Between, simd, { laws, blocks, members, material, b, lists, out, dt })
-    });
+    of_law!(laws, clumps, turning, Between, simd, { laws, blocks, members, material, b, lists, out, dt });
 }
 
 /// Prefetches body records, read in random order.
@@ -72,9 +87,7 @@ pub fn interior(
     next: Prefetch<'_>,
 ) {
     let (rigid, turning) = (members.rigid, pairs.turning);
-    with_law!(laws, laws => {
-        select!(rigid, turning, Interior, simd, { laws, block, pairs, members, totals, next, dt })
-    });
+    of_law!(laws, rigid, turning, Interior, simd, { laws, block, pairs, members, totals, next, dt });
 }
 
 /// `material`: common material of the planes.
@@ -87,17 +100,24 @@ pub fn planes(
     totals: &mut BlockTotals,
 ) {
     let (rigid, turning) = (members.rigid, pairs.turning);
-    with_law!(laws, laws => {
-        select!(rigid, turning, Planes, simd, { laws, planes, material, block, pairs, members, totals, dt })
-    });
+    of_law!(laws, rigid, turning, Planes, simd, { laws, planes, material, block, pairs, members, totals, dt });
 }
 
 /// `turning`: resistance against rolling or twisting, or adhesion possible.
 pub fn patch_forces(setting: &StepContext<'_>, turning: bool, block: &Block, forces: &mut [PatchForce]) {
     let &StepContext { laws, simd, dt } = setting;
+    if simd.any_law_only() {
+        let laws = &laws.any;
+        if turning {
+            run_any(simd, PatchLaw::<_, true> { laws, block, forces, dt });
+        } else {
+            run_any(simd, PatchLaw::<_, false> { laws, block, forces, dt });
+        }
+        return;
+    }
     with_law!(laws, laws => if turning {
-        lanes::run(simd, PatchLaw::<_, true> { laws, block, forces, dt });
+        lanes::run_native(simd, PatchLaw::<_, true> { laws, block, forces, dt });
     } else {
-        lanes::run(simd, PatchLaw::<_, false> { laws, block, forces, dt });
+        lanes::run_native(simd, PatchLaw::<_, false> { laws, block, forces, dt });
     });
 }

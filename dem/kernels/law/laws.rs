@@ -80,9 +80,17 @@ impl<L: ContactLaw> PairTable<L> {
     }
 }
 
-/// Laws of all contacts; uniform laws have separate kernels.
+/// Laws of all contacts.
 #[derive(Clone, Debug)]
-pub enum Laws {
+pub struct Laws {
+    /// Uniform laws have separate kernels.
+    pub table: LawTable,
+    /// The same laws for kernels of any law.
+    pub any: PairTable<AnyLaw>,
+}
+
+#[derive(Clone, Debug)]
+pub enum LawTable {
     Linear(PairTable<LinearLaw>),
     Rough(PairTable<RoughLaw>),
     Hertz(PairTable<HertzLaw>),
@@ -95,12 +103,12 @@ pub enum Laws {
 #[macro_export]
 macro_rules! with_law {
     ($laws:expr, $table:ident => $body:expr) => {
-        match $laws {
-            $crate::law::Laws::Linear($table) => $body,
-            $crate::law::Laws::Rough($table) => $body,
-            $crate::law::Laws::Hertz($table) => $body,
-            $crate::law::Laws::Conical($table) => $body,
-            $crate::law::Laws::AnyLaw($table) => $body,
+        match &$laws.table {
+            $crate::law::LawTable::Linear($table) => $body,
+            $crate::law::LawTable::Rough($table) => $body,
+            $crate::law::LawTable::Hertz($table) => $body,
+            $crate::law::LawTable::Conical($table) => $body,
+            $crate::law::LawTable::AnyLaw($table) => $body,
         }
     };
 }
@@ -114,18 +122,19 @@ impl Laws {
         let rows = all.filter_map(|(i, j)| select_law(&Pair::of(materials, exceptions, i, j)).ok().flatten());
         let rows: std::collections::BTreeSet<usize> = rows.collect();
         let only = |own: &[Row]| rows.iter().all(|&r| own.iter().any(|&row| r == row as usize));
-        if only(&[Row::Linear]) {
-            Laws::Linear(PairTable::new(materials, exceptions))
+        let table = if only(&[Row::Linear]) {
+            LawTable::Linear(PairTable::new(materials, exceptions))
         } else if only(&[Row::Linear, Row::Rough]) {
             // Bitwise linear for pairs without asperities.
-            Laws::Rough(PairTable::new(materials, exceptions))
+            LawTable::Rough(PairTable::new(materials, exceptions))
         } else if only(&[Row::Hertz]) {
-            Laws::Hertz(PairTable::new(materials, exceptions))
+            LawTable::Hertz(PairTable::new(materials, exceptions))
         } else if only(&[Row::Hertz, Row::Conical]) {
-            Laws::Conical(PairTable::new(materials, exceptions))
+            LawTable::Conical(PairTable::new(materials, exceptions))
         } else {
-            Laws::AnyLaw(PairTable::new(materials, exceptions))
-        }
+            LawTable::AnyLaw(PairTable::new(materials, exceptions))
+        };
+        Laws { table, any: PairTable::new(materials, exceptions) }
     }
 
     /// With separate edge laws for Hertz pairs (`line_contact.rs`).
@@ -139,7 +148,14 @@ impl Laws {
         }
         let (materials, exceptions) = line_contact::beside(materials, exceptions);
         let mut laws = Laws::new(&materials, &exceptions);
-        with_law!(&mut laws, t => t.edged = edged);
+        laws.any.edged.clone_from(&edged);
+        match &mut laws.table {
+            LawTable::Linear(t) => t.edged = edged,
+            LawTable::Rough(t) => t.edged = edged,
+            LawTable::Hertz(t) => t.edged = edged,
+            LawTable::Conical(t) => t.edged = edged,
+            LawTable::AnyLaw(t) => t.edged = edged,
+        }
         laws
     }
 

@@ -42,5 +42,5 @@ pub use crate::spatial::detect::ContactGeometry;
 pub use constants::Constants;
 pub use contact::{ContactForce, History, HistoryLanes, LawInput, LawOutput, Linearised, NO_CONTACT};
 pub use contact_law::ContactLaw;
-pub use laws::{Laws, with_law};
+pub use laws::{LawTable, Laws, with_law};
 pub use laws::{PairTable, sources};

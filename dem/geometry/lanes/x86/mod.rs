@@ -50,6 +50,11 @@ impl Simd {
         if more { Simd::Avx512 } else { Simd::Avx2 }
     }
 
+    /// Whether contact loops are compiled for any law only: processors before AVX2.
+    pub fn any_law_only(self) -> bool {
+        self == Simd::Portable
+    }
+
     pub fn name(self) -> &'static str {
         match self {
             Simd::Portable => "four at a time (plain arrays)",
@@ -64,6 +69,18 @@ impl Simd {
 pub fn run<K: Kernel>(simd: Simd, kernel: K) -> K::Output {
     match simd {
         Simd::Portable => kernel.run::<Portable>(),
+        // SAFETY: `Simd::best` detected AVX2.
+        Simd::Avx2 => unsafe { with_avx2(kernel) },
+        // SAFETY: `Simd::best` detected AVX-512.
+        Simd::Avx512 => unsafe { with_avx512(kernel) },
+    }
+}
+
+/// As [`run`], for instructions of this processor only.
+#[inline]
+pub fn run_native<K: Kernel>(simd: Simd, kernel: K) -> K::Output {
+    match simd {
+        Simd::Portable => unreachable!("loops for any law serve processors before AVX2"),
         // SAFETY: `Simd::best` detected AVX2.
         Simd::Avx2 => unsafe { with_avx2(kernel) },
         // SAFETY: `Simd::best` detected AVX-512.
