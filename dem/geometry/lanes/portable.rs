@@ -74,6 +74,9 @@ impl Portable {
 impl Real for Portable {
     type Mask = PortableMask;
 
+    /// Serves processors before AVX2 there.
+    const CALLS: bool = cfg!(all(target_arch = "x86_64", not(feature = "portable")));
+
     #[inline(always)]
     fn splat(x: f64) -> Portable {
         Portable([x; 4])

@@ -12,6 +12,9 @@ pub trait Real:
     /// Whether operations are recorded instead of computed, for GPU kernels.
     const RECORDS: bool = false;
 
+    /// Whether large formulas are called instead of inlined: smaller code where speed matters little.
+    const CALLS: bool = false;
+
     /// The same number in every lane.
     fn splat(x: f64) -> Self;
     /// Square root.

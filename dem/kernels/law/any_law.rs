@@ -1,5 +1,9 @@
 //! Several laws in one model. Lanes evaluate every law present and select by mask.
 
+use super::contact::{HistoryLanes, LawInput, LawOutput};
+use super::contact_law::ContactLaw;
+use crate::lanes::Real;
+
 macro_rules! combinations {
     ($($row:ident($normal:ty, $tangential:ty) = $title:literal),+ $(,)?) => {
         /// All law combinations.
@@ -90,7 +94,7 @@ macro_rules! combinations {
                     let own = law.number.equals(R::splat(Row::$row as usize as f64)) & on;
                     if R::any(own) {
                         let mut after = before;
-                        let force = <Composed<$normal, $tangential>>::evaluate::<R, ROLLING>(
+                        let force = $crate::law::any_law::row::<Composed<$normal, $tangential>, R, ROLLING>(
                             &law.$row, touch, &mut after, own, step,
                         );
                         out = LawOutput::select(own, &force, &out);
@@ -134,6 +138,33 @@ macro_rules! combinations {
     };
 }
 pub(super) use combinations;
+
+/// Evaluates one row, by a call where [`Real::CALLS`].
+#[inline(always)]
+pub(super) fn row<L: ContactLaw, R: Real, const ROLLING: bool>(
+    law: &L::Lanes<R>,
+    touch: &LawInput<R>,
+    memory: &mut HistoryLanes<R>,
+    on: R::Mask,
+    step: R,
+) -> LawOutput<R> {
+    if R::CALLS {
+        called::<L, R, ROLLING>(law, touch, memory, on, step)
+    } else {
+        L::evaluate::<R, ROLLING>(law, touch, memory, on, step)
+    }
+}
+
+#[inline(never)]
+fn called<L: ContactLaw, R: Real, const ROLLING: bool>(
+    law: &L::Lanes<R>,
+    touch: &LawInput<R>,
+    memory: &mut HistoryLanes<R>,
+    on: R::Mask,
+    step: R,
+) -> LawOutput<R> {
+    L::evaluate::<R, ROLLING>(law, touch, memory, on, step)
+}
 
 /// Forwards to the row's law.
 macro_rules! of_each_row {
