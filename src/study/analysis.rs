@@ -151,8 +151,10 @@ fn sensitivity(
     let (values, results): (Vec<Vec<f64>>, Vec<f64>) = known.unzip();
     let column = |j: usize| values.iter().map(|v| factors[j].regressor(v[j])).collect::<Vec<f64>>();
     let columns: Vec<Vec<f64>> = (0..factors.len()).map(column).collect();
-    let numbers = factors.iter().all(|f| f.categories.is_empty());
-    let regression = numbers.then(|| Regression::fit(&columns, &results)).flatten();
+    let numbers: Vec<bool> = factors.iter().map(|f| f.categories.is_empty()).collect();
+    // Every category has all samples, hence no part in the slopes.
+    let fits = combine.is_none() || numbers.iter().all(|n| *n);
+    let regression = fits.then(|| Regression::fit_some(&columns, &numbers, &results)).flatten();
     let ranked = !matches!(combine, Some(Combine::OneAtATime | Combine::List)) || factors.len() == 1;
     let rank = |j: usize| rank_correlation(&columns[j], &results);
     let rank_correlations =
@@ -160,7 +162,13 @@ fn sensitivity(
     let base = points.iter().find_map(Point::complete);
     let (centre, responses) = match (combine, &regression) {
         (None, None) => (None, vec![Vec::new(); factors.len()]),
-        (None, Some(fit)) => fitted(factors, fit),
+        (None, Some(fit)) => {
+            let (centre, mut lines) = fitted(factors, fit);
+            for j in (0..factors.len()).filter(|j| !numbers[*j]) {
+                lines[j] = level_means(&values, &results, j, |_| true);
+            }
+            (centre, lines)
+        }
         // Axes that vary together have no separate effects.
         (Some(Combine::List), _) if factors.len() > 1 => (None, vec![Vec::new(); factors.len()]),
         (Some(Combine::OneAtATime), _) => {

@@ -62,6 +62,28 @@ fn categories_have_extreme_results() {
     assert!(found.regression.is_none() && found.rank_correlations[0].is_none());
 }
 
+/// y = 3 a, plus 1 or 5 by category.
+#[test]
+fn samples_at_each_category() {
+    let kinds = Factor {
+        name: "kind".into(),
+        range: [1.0, 2.0],
+        categories: ["x", "y"].map(String::from).to_vec(),
+        ..Factor::default()
+    };
+    let factors = [factor("a", [0.0, 2.0], false), kinds];
+    let samples = latin_hypercube(6, 1, 1);
+    let each = [(1.0, 1.0), (2.0, 5.0)].into_iter().flat_map(|case| samples.iter().map(move |u| (case, u)));
+    let points: Vec<Point> =
+        each.map(|((kind, offset), u)| point(&[2.0 * u[0], kind], 6.0 * u[0] + offset)).collect();
+    let found = sensitivity(&factors, None, &points, 0);
+    assert_relative_eq!(found.effect(0, &factors[0]).unwrap(), 6.0, max_relative = 1e-9);
+    assert_relative_eq!(found.effect(1, &factors[1]).unwrap(), 4.0, max_relative = 1e-9);
+    assert_relative_eq!(found.centre.unwrap(), 6.0, max_relative = 1e-9);
+    let fit = found.regression.unwrap();
+    assert_eq!((fit.coefficients.len(), fit.slopes[1]), (2, 0.0));
+}
+
 #[test]
 fn incomplete_points_are_left_out() {
     let factors = [factor("a", [0.0, 3.0], false)];

@@ -94,6 +94,9 @@ pub struct ParameterTable {
     /// Distribution over the range; default linear.
     #[serde(default)]
     pub scale: Scale,
+    /// Whole numbers only, each equally likely on a linear scale; default false.
+    #[serde(default)]
+    pub integer: bool,
 }
 
 /// Distribution over a range.

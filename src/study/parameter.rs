@@ -6,6 +6,9 @@ use super::factor::Factor;
 use super::file::{Method, ParameterTable, Sampling, Scale, StudyFile};
 use trackbed_input::scene::{Document, Problem, SceneError};
 
+/// Largest number up to which all whole numbers are exact.
+const LARGEST: f64 = 9_007_199_254_740_992.0;
+
 /// Samples of the parameters.
 #[derive(Debug)]
 pub struct Samples {
@@ -13,7 +16,7 @@ pub struct Samples {
     pub factors: Vec<Factor>,
     /// Values by sample.
     pub values: Vec<Vec<f64>>,
-    /// Cases.
+    /// Overrides of each sample alone.
     pub settings: Vec<Setting>,
 }
 
@@ -32,8 +35,7 @@ pub fn resolve(document: &Document, file: &StudyFile) -> Result<Option<Samples>,
         return Err(document.problem("sampling", Problem::requirement("`parameter`")));
     }
     let others = [
-        ("axis", !file.axis.is_empty()),
-        ("combine", file.combine.is_some()),
+        ("combine", file.combine.is_some() && file.axis.is_empty()),
         ("reference", file.reference.is_some()),
         ("tolerance", file.tolerance.is_some()),
     ];
@@ -49,18 +51,25 @@ pub fn resolve(document: &Document, file: &StudyFile) -> Result<Option<Samples>,
         }
     }
     let points = points(document, sampling, factors.len())?;
-    let value = |factor: &Factor, u: f64| {
-        let [low, high] = factor.range;
-        let value = match factor.log {
-            true => low * libm::pow(high / low, u),
-            false => low + u * (high - low),
-        };
-        value.clamp(low, high)
+    let of_point = |point: &Vec<f64>| {
+        let all = factors.iter().zip(&file.parameter).zip(point);
+        all.map(|((factor, table), u)| value(factor, table.integer, *u)).collect()
     };
-    let values: Vec<Vec<f64>> =
-        points.iter().map(|p| factors.iter().zip(p).map(|(f, u)| value(f, *u)).collect()).collect();
+    let values: Vec<Vec<f64>> = points.iter().map(of_point).collect();
     let settings = values.iter().enumerate().map(|(k, row)| setting(file, &factors, k, row)).collect();
     Ok(Some(Samples { factors, values, settings }))
+}
+
+/// Value at `u` of the unit interval.
+fn value(factor: &Factor, integer: bool, u: f64) -> f64 {
+    // Each whole number has an interval of length 1.
+    let [low, high] = if integer { [factor.range[0] - 0.5, factor.range[1] + 0.5] } else { factor.range };
+    let value = match factor.log {
+        true => low * libm::pow(high / low, u),
+        false => low + u * (high - low),
+    };
+    let value = if integer { value.round() } else { value };
+    value.clamp(factor.range[0], factor.range[1])
 }
 
 fn factor(document: &Document, index: usize, table: &ParameterTable) -> Result<Factor, SceneError> {
@@ -91,6 +100,9 @@ fn factor(document: &Document, index: usize, table: &ParameterTable) -> Result<F
     if log && !(low > 0.0 && (high / low).is_finite()) {
         return fault("range", found(), "two numbers above 0 with scale = \"log\"");
     }
+    if table.integer && (low.fract() != 0.0 || high.fract() != 0.0 || low.abs().max(high.abs()) > LARGEST) {
+        return fault("range", found(), "two whole numbers of at most 2⁵³ with integer = true");
+    }
     Ok(Factor { name, unit, log, range: table.range, categories: Vec::new() })
 }
 
@@ -113,13 +125,14 @@ fn points(document: &Document, sampling: &Sampling, dimensions: usize) -> Result
 fn setting(file: &StudyFile, factors: &[Factor], index: usize, values: &[f64]) -> Setting {
     let assignment = |(table, (factor, value)): (&ParameterTable, (&Factor, &f64))| {
         let quote = if factor.unit.is_empty() { "" } else { "\"" };
-        let text = format!("{value:?} {}", factor.unit);
+        let number = if table.integer { format!("{value:.0}") } else { format!("{value:?}") };
+        let text = format!("{number} {}", factor.unit);
         format!("{}={quote}{}{quote}", table.key, text.trim_end())
     };
     let own = file.parameter.iter().zip(factors.iter().zip(values)).map(assignment);
     Setting {
         label: format!("sample={:03}", index + 1),
         levels: values.iter().map(ToString::to_string).collect(),
-        set: file.base.set.iter().cloned().chain(own).collect(),
+        set: own.collect(),
     }
 }

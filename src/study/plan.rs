@@ -4,7 +4,7 @@ use super::axis::{Axis, MOST_RUNS, Setting, combine};
 use super::factor::Factor;
 use super::file::{Combine, StudyFile};
 use super::label::file_names;
-use super::parameter;
+use super::parameter::{self, Samples};
 use super::quantity::{self, Quantity};
 use super::target::{self, Target};
 use std::collections::BTreeSet;
@@ -91,7 +91,11 @@ impl Plan {
             let named = |factor: &Factor| quantities.iter().any(|q| q.name == factor.name);
             if let Some(k) = factors.iter().position(named) {
                 let found = format!("{:?}, the name of a quantity", factors[k].name);
-                let place = format!("parameter.{k}.name");
+                let sampled = file.parameter.len();
+                let place = match k.checked_sub(sampled) {
+                    None => format!("parameter.{k}.name"),
+                    Some(k) => format!("axis.{k}.name"),
+                };
                 return Err(document.error(&place, found, "distinct names").into());
             }
         }
@@ -130,36 +134,81 @@ struct Cases {
 }
 
 fn cases(document: &Document, file: &StudyFile) -> Result<Cases, SceneError> {
-    if let Some(samples) = parameter::resolve(document, file)? {
-        let coordinates = samples.values.iter().map(|row| row.iter().copied().map(Some).collect()).collect();
-        return Ok(Cases {
-            axes: samples.factors.iter().map(Factor::head).collect(),
-            factors: samples.factors,
-            coordinates,
-            settings: samples.settings,
-            reference: 0,
-            combine: None,
-        });
-    }
+    let samples = parameter::resolve(document, file)?;
     let axes: Vec<Axis> =
         (0..file.axis.len()).map(|k| Axis::new(document, k, &file.axis[k])).collect::<Result<Vec<_>, _>>()?;
+    if let Some(samples) = samples {
+        return sampled(document, file, &axes, samples);
+    }
     if axes.is_empty() && file.seeds.is_none() {
         let expected = "at least one [[axis]] or [[parameter]], or [seeds]";
         return Err(document.error("axis", "nothing", expected));
     }
     let mut settings = combine(document, file, &axes)?;
     let reference = reference(document, file, &mut settings)?;
-    let mut labels = BTreeSet::new();
-    if let Some(twice) = settings.iter().find(|s| !labels.insert(s.label.as_str())) {
-        let found = format!("the case \"{}\" twice", twice.label);
-        return Err(document.error("axis", found, "cases with distinct labels"));
-    }
+    reject_twins(document, &settings)?;
     let (factors, columns): (Vec<Factor>, Vec<Vec<Option<f64>>>) =
         axes.iter().enumerate().map(|(k, axis)| Factor::of_axis(&axis.name, k, &settings)).unzip();
     let coordinates = (0..settings.len()).map(|row| columns.iter().map(|c| c[row]).collect()).collect();
     let axes = axes.into_iter().map(|a| a.name).collect();
     let combine = Some(file.combine.unwrap_or_default());
     Ok(Cases { axes, factors, coordinates, settings, reference, combine })
+}
+
+fn reject_twins(document: &Document, settings: &[Setting]) -> Result<(), SceneError> {
+    let mut labels = BTreeSet::new();
+    match settings.iter().find(|s| !labels.insert(s.label.as_str())) {
+        None => Ok(()),
+        Some(twice) => {
+            let found = format!("the case \"{}\" twice", twice.label);
+            Err(document.error("axis", found, "cases with distinct labels"))
+        }
+    }
+}
+
+/// All samples at each case of the axes.
+fn sampled(
+    document: &Document,
+    file: &StudyFile,
+    axes: &[Axis],
+    samples: Samples,
+) -> Result<Cases, SceneError> {
+    let cases = combine(document, file, axes)?;
+    reject_twins(document, &cases)?;
+    if cases.len().saturating_mul(samples.settings.len()) > MOST_RUNS {
+        return Err(document.error("axis", "too many runs", format!("at most {MOST_RUNS}")));
+    }
+    let together = |case: &Setting, sample: &Setting| Setting {
+        label: match axes {
+            [] => sample.label.clone(),
+            _ => format!("{}, {}", case.label, sample.label),
+        },
+        levels: sample.levels.iter().chain(&case.levels).cloned().collect(),
+        set: case.set.iter().chain(&sample.set).cloned().collect(),
+    };
+    let each = || cases.iter().flat_map(|case| samples.settings.iter().map(move |sample| (case, sample)));
+    let settings: Vec<Setting> = each().map(|(case, sample)| together(case, sample)).collect();
+    let count = samples.factors.len();
+    let (of_axes, columns): (Vec<Factor>, Vec<Vec<Option<f64>>>) =
+        axes.iter().enumerate().map(|(k, axis)| Factor::of_axis(&axis.name, count + k, &settings)).unzip();
+    let row = |k: usize| {
+        let own = samples.values[k % samples.values.len()].iter().copied().map(Some);
+        own.chain(columns.iter().map(|column| column[k])).collect()
+    };
+    let coordinates = (0..settings.len()).map(row).collect();
+    let factors: Vec<Factor> = samples.factors.into_iter().chain(of_axes).collect();
+    if let Some(k) = (1..factors.len()).find(|k| factors[..*k].iter().any(|f| f.name == factors[*k].name)) {
+        let found = format!("\"{}\" twice", factors[k].name);
+        return Err(document.error(&format!("axis.{}.name", k - count), found, "distinct names"));
+    }
+    Ok(Cases {
+        axes: factors.iter().map(Factor::head).collect(),
+        factors,
+        coordinates,
+        settings,
+        reference: 0,
+        combine: None,
+    })
 }
 
 /// A separate reference is inserted first.

@@ -78,3 +78,27 @@ fn assigns_seeds_to_scene_keys() {
     );
     fs::remove_dir_all(&dir).unwrap();
 }
+
+const SAMPLES: &str = "[sampling]\nmethod = \"latin-hypercube\"\nsamples = 6\n[[parameter]]\nkey = \"grains.0.count\"\n\
+                       range = [1, 3]\ninteger = true\n";
+
+#[test]
+fn samples_run_at_each_case() {
+    let plan = plan("study_sampled", "", SAMPLES).unwrap();
+    assert_eq!((plan.runs.len(), plan.axes.len(), plan.has_reference()), (24, 3, false));
+    assert_eq!(plan.runs[7].label, "end=1, law=b, sample=002");
+    assert_eq!(plan.axes, ["count", "end", "law"]);
+    assert_eq!(plan.factors[2].categories, ["a", "b"]);
+    let count = |k: usize| plan.settings[k].set.last().unwrap().clone();
+    assert_eq!(plan.settings[7].set[..2], ["title=y", "time.end=1"]);
+    assert_eq!(plan.coordinates[7][1..], [Some(1.0), Some(2.0)]);
+    // Two samples of each whole number; the same ones at each case.
+    let mut counts: Vec<String> = (0..6).map(count).collect();
+    assert_eq!(counts, (18..24).map(count).collect::<Vec<_>>());
+    counts.sort();
+    let expected = [1, 1, 2, 2, 3, 3].map(|n| format!("grains.0.count={n}"));
+    assert_eq!(counts, expected);
+    let twice = SAMPLES.replace("range", "name = \"law\"\nrange");
+    let error = self::plan("study_twins", "", &twice).unwrap_err().to_string();
+    assert!(error.contains("axis.1.name: found \"law\" twice, expected distinct names"), "{error}");
+}

@@ -50,6 +50,17 @@ impl Regression {
         Some(Regression { coefficients, standard_errors, slopes, intercept, r_squared })
     }
 
+    /// Fits y to the columns that `counts`; the others have coefficients of zero.
+    pub fn fit_some(x: &[Vec<f64>], counts: &[bool], y: &[f64]) -> Option<Regression> {
+        let some: Vec<Vec<f64>> = x.iter().zip(counts).filter(|(_, c)| **c).map(|(x, _)| x.clone()).collect();
+        let mut fit = Regression::fit(&some, y)?;
+        for list in [&mut fit.coefficients, &mut fit.standard_errors, &mut fit.slopes] {
+            let mut own = std::mem::take(list).into_iter();
+            list.extend(counts.iter().map(|c| if *c { own.next().unwrap_or(0.0) } else { 0.0 }));
+        }
+        Some(fit)
+    }
+
     /// Returns the result of the fit at `x`.
     pub fn at(&self, x: &[f64]) -> f64 {
         self.intercept + dot(&self.slopes, x)

@@ -90,7 +90,8 @@ pub fn sensitivities(analysis: &Analysis) -> Table {
                 Cell::text(result.head()),
                 Cell::text(factor.head()),
                 Cell::number(s.effect(j, factor)),
-                fit.map_or(Cell::Nothing, |f| Cell::Number(f.coefficients[j], Some(f.standard_errors[j]))),
+                fit.filter(|_| factor.categories.is_empty())
+                    .map_or(Cell::Nothing, |f| Cell::Number(f.coefficients[j], Some(f.standard_errors[j]))),
                 Cell::number(fit.map(|f| f.r_squared)),
                 Cell::number(s.rank_correlations[j]),
             ]);

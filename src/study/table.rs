@@ -110,14 +110,15 @@ pub fn sensitivities(analysis: &Analysis) -> Result<String, csv::Error> {
             let ends = s.ends(j, factor);
             let end = |k: usize| ends.map_or(String::new(), |e| factor.text(e[k][0]));
             let fit = s.regression.as_ref();
+            let own = fit.filter(|_| factor.categories.is_empty());
             let mut row = vec![result.head(), factor.head(), end(0), end(1)];
             row.extend(
                 [
                     ends.map(|e| e[0][1]),
                     ends.map(|e| e[1][1]),
                     s.effect(j, factor),
-                    fit.map(|f| f.coefficients[j]),
-                    fit.map(|f| f.standard_errors[j]),
+                    own.map(|f| f.coefficients[j]),
+                    own.map(|f| f.standard_errors[j]),
                     fit.map(|f| f.r_squared),
                     s.rank_correlations[j],
                 ]

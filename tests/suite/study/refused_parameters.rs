@@ -47,12 +47,8 @@ fn rejects_bad_samples() {
     refused("samples = 4", "sample = 4", line);
     let line = "study.toml:4: parameter: found without `sampling`, expected both";
     refused("[sampling]\nmethod = \"sobol\"\nsamples = 4\n\n", "\n", line);
-    let more = "[[axis]]\nkey = \"time.grain_step\"\nvalues = [1e-4]\n\n[sampling]";
-    refused(
-        "[sampling]",
-        more,
-        "study.toml:3: axis: found together with `parameter`, expected only one of them",
-    );
+    let line = "study.toml:2: combine: found together with `parameter`, expected only one of them";
+    refused("\"scene.toml\"\n", "\"scene.toml\"\ncombine = \"grid\"", line);
     let line = "study.toml:2: tolerance: found together with `parameter`, expected only one of them";
     refused("\"scene.toml\"\n", "\"scene.toml\"\ntolerance = 0.1", line);
     let line = "study.toml:17: quantity.0.exact: found together with `parameter`, expected only one of them";
@@ -73,6 +69,8 @@ fn rejects_bad_parameters() {
     refused("[0.2, 2.0]", "[-1e308, 1e308]", &format!("{at} [-1e308, 1e308], expected a smaller range"));
     let line = format!("{at} [0.0, 2.0], expected two numbers above 0 with scale = \"log\"");
     refused("[0.2, 2.0]", "[0, 2]\nscale = \"log\"", &line);
+    let line = format!("{at} [0.2, 2.0], expected two whole numbers of at most 2⁵³ with integer = true");
+    refused("[0.2, 2.0]", "[0.2, 2.0]\ninteger = true", &line);
     let line = "study.toml:9: parameter.0.key: found \"a=b\", expected a key of the scene";
     refused("\"time.end\"", "\"a=b\"", line);
     let line = "study.toml:8: parameter.0.name: found \"a,b\", expected a name without = , | or quotes";
