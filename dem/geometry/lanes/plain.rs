@@ -11,7 +11,6 @@ pub enum Simd {
 
 impl Simd {
     /// Implementations available.
-    #[cfg(test)]
     pub fn all() -> Vec<Simd> {
         vec![Simd::Portable]
     }

@@ -53,7 +53,7 @@ pub struct ListWork {
 
 #[derive(Clone, Debug)]
 pub struct BondWork {
-    simd: Simd,
+    pub simd: Simd,
     pub cross: Vec<ListWork>,
     shares: Vec<Vec<BondForces>>,
 }

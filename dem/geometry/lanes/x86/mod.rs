@@ -30,7 +30,6 @@ pub enum Simd {
 
 impl Simd {
     /// Implementations supported by this CPU.
-    #[cfg(test)]
     pub fn all() -> Vec<Simd> {
         match Simd::best() {
             Simd::Portable => vec![Simd::Portable],
