@@ -9,7 +9,7 @@ use crate::assumed::modes::{self, HEX8_TERMS};
 use crate::assumed::{AssumedStrain, Dilatation, ElementStrains};
 use crate::boundary::{BoundaryLayer, FaceMatrix};
 use crate::element::quadrature::Quadrature;
-use crate::element::{ElementKind, mass_points, stiffness_points};
+use crate::element::{mass_points, on_kind, stiffness_points};
 use crate::kinematics::{gradient_products, mass_matrix, mean_gradients, stiffness_block};
 use crate::mass::{Mass, lump};
 use crate::material::elastic::Elastic;
@@ -394,16 +394,9 @@ fn contribution(
     formulation: Formulation,
     material: (&Elastic, bool),
 ) -> ElementContribution {
-    match mesh.connectivity.kind(element) {
-        ElementKind::Hex20 => contribution_of::<20>(mesh, element, formulation, material),
-        ElementKind::Wedge15 => contribution_of::<15>(mesh, element, formulation, material),
-        ElementKind::Pyramid13 => contribution_of::<13>(mesh, element, formulation, material),
-        ElementKind::Tet10 => contribution_of::<10>(mesh, element, formulation, material),
-        ElementKind::Hex8 => contribution_of::<8>(mesh, element, formulation, material),
-        ElementKind::Wedge6 => contribution_of::<6>(mesh, element, formulation, material),
-        ElementKind::Pyramid5 => contribution_of::<5>(mesh, element, formulation, material),
-        ElementKind::Tet4 => contribution_of::<4>(mesh, element, formulation, material),
-    }
+    on_kind!(mesh.connectivity.kind(element), of_kind => {
+        contribution_of::<{ of_kind::NODES }>(mesh, element, formulation, material)
+    })
 }
 
 fn contribution_of<const N: usize>(
@@ -424,7 +417,7 @@ fn contribution_of<const N: usize>(
     }
     let points = stiffness_points(kind, quadrature);
     let (lambda, mu) = material.lame();
-    let blocks = if kind == ElementKind::Hex8 && assumed.incompatible_modes {
+    let blocks = if assumed.has_modes(kind) {
         let strains = ElementStrains::new(kind, coordinates, points, assumed, material.poisson, yields);
         blocks_with_modes::<N>(&strains, lambda, mu)
     } else if kind.is_linear() {

@@ -30,7 +30,7 @@ pub fn lump<const N: usize>(consistent: &[[f64; N]; N]) -> [f64; N] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::{ElementKind, MAX_NODES, mass_points};
+    use crate::element::{ElementKind, MAX_NODES, mass_points, on_kind};
     use crate::kinematics::mass_matrix;
 
     fn of_natural_shape<const N: usize>(kind: ElementKind) -> [f64; N] {
@@ -45,14 +45,9 @@ mod tests {
 
     #[test]
     fn lumping_keeps_mass_and_positivity() {
-        of_natural_shape::<20>(ElementKind::Hex20);
-        of_natural_shape::<15>(ElementKind::Wedge15);
-        of_natural_shape::<13>(ElementKind::Pyramid13);
-        of_natural_shape::<10>(ElementKind::Tet10);
-        of_natural_shape::<8>(ElementKind::Hex8);
-        of_natural_shape::<6>(ElementKind::Wedge6);
-        of_natural_shape::<5>(ElementKind::Pyramid5);
-        of_natural_shape::<4>(ElementKind::Tet4);
+        for kind in ElementKind::ALL {
+            on_kind!(kind, element => of_natural_shape::<{ element::NODES }>(kind).len());
+        }
     }
 
     #[test]

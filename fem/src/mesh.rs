@@ -1,7 +1,6 @@
 //! Finite-element mesh: nodes, elements, boundary faces.
 
 use crate::connectivity::Connectivity;
-pub use crate::element::hex20::{FACE_NODES, HEX20_NODES};
 use crate::element::{ElementKind, FaceShape, MAX_FACE_NODES, mass_points};
 use crate::kinematics::{ElementCoordinates, jacobian};
 

@@ -1,11 +1,12 @@
 //! Stress recovery: xx, yy, zz, xy, yz, zx [Pa], tension positive.
 //!
 //! Stresses at the 2×2×2 points, superconvergent in the hex20 (Barlow 1976), are extrapolated trilinearly to
-//! the nodes. Shared nodes average over elements of each material, then over materials. Limits: stress jumps
-//! at material interfaces are averaged; see [`at_natural`].
+//! the nodes; other shapes: [`crate::element::NaturalShape`]. Shared nodes average over elements of each
+//! material, then over materials. Limits: stress jumps at material interfaces are averaged; see
+//! [`at_natural`].
 
-use crate::element::quadrature::{GAUSS2, LINE2, PYRAMID8, Quadrature};
-use crate::element::{ElementKind, MAX_NODES, mass_points, stiffness_points};
+use crate::element::quadrature::Quadrature;
+use crate::element::{ElementKind, MAX_NODES, stiffness_points};
 use crate::kinematics::jacobian;
 use crate::model::Model;
 use crate::state::State;
@@ -39,16 +40,10 @@ fn at_points(
 }
 
 pub(crate) fn sampling_points(kind: ElementKind) -> Vec<[f64; 3]> {
-    match kind {
-        ElementKind::Hex20 | ElementKind::Hex8 => GAUSS2.map(|p| p.0).to_vec(),
-        ElementKind::Wedge15 | ElementKind::Wedge6 => {
-            mass_points(ElementKind::Wedge6).iter().map(|p| p.xi).collect()
-        }
-        ElementKind::Tet10 => stiffness_points(kind, Quadrature::Gauss2).iter().map(|p| p.xi).collect(),
-        // Not the nodes: stress has no limit at the apex.
-        ElementKind::Pyramid13 => PYRAMID8.map(|p| p.0).to_vec(),
-        ElementKind::Pyramid5 | ElementKind::Tet4 => vec![kind.natural_centre()],
+    if kind.properties().constant_stress {
+        return vec![kind.natural_centre()];
     }
+    kind.shape().sampling_rule().iter().map(|p| p.0).collect()
 }
 
 /// Averaged nodal stress. Shape `[nodes][6]`.
@@ -147,18 +142,11 @@ pub fn centroid_of_points(model: &Model, state: &State, element: usize) -> ([f64
 
 /// Least-squares weights. Shape `[nodes][points]`.
 fn fit_weights(kind: ElementKind, rule: Quadrature) -> &'static [Vec<f64>] {
-    static TABLES: [[OnceLock<Vec<Vec<f64>>>; 3]; 8] = [const { [const { OnceLock::new() }; 3] }; 8];
+    static TABLES: [[OnceLock<Vec<Vec<f64>>>; 3]; ElementKind::ALL.len()] =
+        [const { [const { OnceLock::new() }; 3] }; ElementKind::ALL.len()];
     TABLES[kind as usize][rule as usize].get_or_init(|| {
-        let terms = |x: [f64; 3]| -> Vec<f64> {
-            let [r, s, t] = x;
-            match kind {
-                ElementKind::Hex20 | ElementKind::Hex8 => {
-                    vec![1.0, r, s, t, r * s, s * t, t * r, r * s * t]
-                }
-                ElementKind::Wedge15 | ElementKind::Wedge6 => vec![1.0, r, s, t, r * t, s * t],
-                ElementKind::Tet10 => vec![1.0, r, s, t],
-                ElementKind::Pyramid13 | ElementKind::Pyramid5 | ElementKind::Tet4 => vec![1.0],
-            }
+        let terms = |x: [f64; 3]| {
+            if kind.properties().constant_stress { vec![1.0] } else { kind.shape().fit_terms(x) }
         };
         let points: Vec<Vec<f64>> = stiffness_points(kind, rule).iter().map(|p| terms(p.xi)).collect();
         let a = DMatrix::from_fn(points.len(), points[0].len(), |i, j| points[i][j]);
@@ -220,13 +208,13 @@ pub fn von_mises(s: &[f64; 6]) -> f64 {
     (0.5 * normal + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5])).sqrt()
 }
 
-/// Extrapolates to nodes: trilinear (hexahedra), linear (others), least squares (pyramid13), constant
-/// (pyramid5, tet4).
+/// Extrapolates from [`sampling_points`] to nodes.
 pub(crate) fn extrapolate<const C: usize>(kind: ElementKind, points: &[[f64; C]]) -> [[f64; C]; MAX_NODES] {
+    let constant = kind.properties().constant_stress;
     let mut nodes = [[0.0; C]; MAX_NODES];
     for (value, node) in nodes.iter_mut().zip(kind.natural()) {
         for (i, point) in points.iter().enumerate() {
-            let weight = extrapolation_weight(kind, i, *node);
+            let weight = if constant { 1.0 } else { kind.shape().extrapolation_weight(i, *node) };
             for c in 0..C {
                 value[c] += weight * point[c];
             }
@@ -235,52 +223,18 @@ pub(crate) fn extrapolate<const C: usize>(kind: ElementKind, points: &[[f64; C]]
     nodes
 }
 
-fn extrapolation_weight(kind: ElementKind, i: usize, x: [f64; 3]) -> f64 {
-    match kind {
-        ElementKind::Hex20 | ElementKind::Hex8 => {
-            let xi = GAUSS2[i].0;
-            (0..3).map(|k| 0.5 * (1.0 + x[k] * xi[k] / LINE2[1].0.powi(2))).product()
-        }
-        ElementKind::Wedge15 | ElementKind::Wedge6 => {
-            // Triangle points: 1/6, 1/6, 2/3 in area coordinates.
-            let p = mass_points(ElementKind::Wedge6)[i].xi;
-            let area = |at: [f64; 3]| [1.0 - at[0] - at[1], at[0], at[1]];
-            let corner = (0..3).max_by(|a, b| area(p)[*a].total_cmp(&area(p)[*b])).unwrap_or(0);
-            (2.0 * area(x)[corner] - 1.0 / 3.0) * 0.5 * (1.0 + x[2] * p[2] / LINE2[1].0.powi(2))
-        }
-        ElementKind::Tet10 => {
-            // Points: (5 - √5)/20 and once (5 + 3√5)/20 in volume coordinates.
-            let p = stiffness_points(ElementKind::Tet10, Quadrature::Gauss2)[i].xi;
-            let volume = |at: [f64; 3]| [1.0 - at[0] - at[1] - at[2], at[0], at[1], at[2]];
-            let corner = (0..4).max_by(|a, b| volume(p)[*a].total_cmp(&volume(p)[*b])).unwrap_or(0);
-            let (far, near) = ((5.0 - 5.0_f64.sqrt()) / 20.0, (5.0 + 3.0 * 5.0_f64.sqrt()) / 20.0);
-            (volume(x)[corner] - far) / (near - far)
-        }
-        ElementKind::Pyramid13 => {
-            // Constant, x, y and t - middle are orthogonal on the points.
-            let middle = PYRAMID8.iter().map(|p| p.0[2]).sum::<f64>() / 8.0;
-            let functions = |at: [f64; 3]| [1.0, at[0], at[1], at[2] - middle];
-            let term = |k: usize| {
-                let norm: f64 = PYRAMID8.iter().map(|p| functions(p.0)[k].powi(2)).sum();
-                functions(x)[k] * functions(PYRAMID8[i].0)[k] / norm
-            };
-            (0..4).map(term).sum()
-        }
-        ElementKind::Pyramid5 | ElementKind::Tet4 => 1.0,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::element::NaturalShape;
 
     #[test]
     fn extrapolation_is_exact_for_polynomials() {
         for kind in ElementKind::ALL {
-            let field = |x: [f64; 3]| match kind.linear() {
-                ElementKind::Hex8 => 2.0 + x[0] - 3.0 * x[1] * x[2] + 0.5 * x[0] * x[1] * x[2],
-                ElementKind::Wedge6 => 2.0 + x[0] - 3.0 * x[1] + x[2] * (0.5 - x[0] + 2.0 * x[1]),
-                _ if !kind.is_linear() => 2.0 + x[0] - 3.0 * x[1] + 0.5 * x[2],
+            let field = |x: [f64; 3]| match kind.shape() {
+                NaturalShape::Hexahedron => 2.0 + x[0] - 3.0 * x[1] * x[2] + 0.5 * x[0] * x[1] * x[2],
+                NaturalShape::Wedge => 2.0 + x[0] - 3.0 * x[1] + x[2] * (0.5 - x[0] + 2.0 * x[1]),
+                _ if !kind.properties().constant_stress => 2.0 + x[0] - 3.0 * x[1] + 0.5 * x[2],
                 _ => 2.0,
             };
             let points: Vec<_> = sampling_points(kind).into_iter().map(|xi| [field(xi); 6]).collect();
@@ -294,10 +248,12 @@ mod tests {
     #[test]
     fn fit_reproduces_polynomials() {
         for kind in ElementKind::ALL {
-            let field = |x: [f64; 3]| match kind.linear() {
-                ElementKind::Hex8 => 2.0 + x[0] - 3.0 * x[1] * x[2] + 0.5 * x[0] * x[1] * x[2],
-                ElementKind::Wedge6 => 2.0 + x[0] - 3.0 * x[1] + x[2] * (0.5 - x[0] + 2.0 * x[1]),
-                ElementKind::Tet4 if kind == ElementKind::Tet10 => 2.0 + x[0] - 3.0 * x[1] + 0.5 * x[2],
+            let field = |x: [f64; 3]| match kind.shape() {
+                NaturalShape::Hexahedron => 2.0 + x[0] - 3.0 * x[1] * x[2] + 0.5 * x[0] * x[1] * x[2],
+                NaturalShape::Wedge => 2.0 + x[0] - 3.0 * x[1] + x[2] * (0.5 - x[0] + 2.0 * x[1]),
+                NaturalShape::Tetrahedron if !kind.properties().constant_stress => {
+                    2.0 + x[0] - 3.0 * x[1] + 0.5 * x[2]
+                }
                 _ => 2.0,
             };
             for rule in [Quadrature::Gauss2, Quadrature::Irons14, Quadrature::Gauss3] {

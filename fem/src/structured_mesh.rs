@@ -1,8 +1,7 @@
 //! Structured meshes of bricks.
 
 use crate::element::ElementKind;
-use crate::element::hex20::HEX20_NODES;
-use crate::element::hex20::NATURAL;
+use crate::element::hex20::{NATURAL, NODES};
 use crate::mesh::Mesh;
 
 impl Mesh {
@@ -41,7 +40,7 @@ impl Mesh {
         for k in 0..counts[2] {
             for j in 0..counts[1] {
                 for i in 0..counts[0] {
-                    let mut nodes = [0; HEX20_NODES];
+                    let mut nodes = [0; NODES];
                     for (node, natural) in nodes.iter_mut().zip(NATURAL) {
                         let [a, b, c] = natural.map(|v| (v + 1.0) as usize);
                         *node = index[((2 * k + c) * ny + 2 * j + b) * nx + 2 * i + a];

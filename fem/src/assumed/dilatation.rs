@@ -36,10 +36,10 @@ pub(super) fn terms(kind: ElementKind, dilatation: Dilatation, bends: bool) -> O
     if kind.is_linear() {
         return Some(if bends { Terms::Linear } else { Terms::Constant });
     }
-    match (dilatation, kind) {
-        (Dilatation::Pointwise, _) => None,
-        (Dilatation::Mean, ElementKind::Hex20) => Some(Terms::Linear),
-        (Dilatation::Mean, _) => Some(Terms::Constant),
+    let linear = kind.properties().linear_dilatation;
+    match dilatation {
+        Dilatation::Pointwise => None,
+        Dilatation::Mean => Some(if linear { Terms::Linear } else { Terms::Constant }),
     }
 }
 

@@ -23,6 +23,13 @@ pub struct AssumedStrain {
     pub incompatible_modes: bool,
 }
 
+impl AssumedStrain {
+    /// Whether elements of a kind have incompatible modes.
+    pub fn has_modes(&self, kind: ElementKind) -> bool {
+        self.incompatible_modes && kind.properties().incompatible_modes
+    }
+}
+
 /// Gradients at a point of an element.
 pub struct PointGradients {
     /// Gradients of shape functions, then of incompatible modes [1/m].
@@ -52,7 +59,7 @@ impl ElementStrains {
         poisson: f64,
         yields: bool,
     ) -> ElementStrains {
-        let modes = kind == ElementKind::Hex8 && assumed.incompatible_modes;
+        let modes = assumed.has_modes(kind);
         let mut strains = ElementStrains { kind, coordinates, rule, internal: None, projection: None };
         strains.internal = modes.then(|| Internal::new(&coordinates));
         if let Some(terms) = dilatation::terms(kind, assumed.dilatation, modes && !yields) {

@@ -14,11 +14,15 @@
 //!
 //! Source: Zienkiewicz and Taylor (2000), vol. 1, chapter 8. Limits: locks with full integration.
 
+use super::natural_shape::NaturalShape;
+use super::properties::{Locking, Properties};
+use super::quadrature::GAUSS2;
+
 /// Node count.
-pub const HEX8_NODES: usize = 8;
+pub const NODES: usize = 8;
 
 /// Natural node coordinates. Shape `[8][3]`.
-pub const NATURAL: [[f64; 3]; HEX8_NODES] = [
+pub const NATURAL: [[f64; 3]; NODES] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
     [1.0, 1.0, -1.0],
@@ -33,13 +37,24 @@ pub const NATURAL: [[f64; 3]; HEX8_NODES] = [
 pub const FACES: [&[usize]; 6] =
     [&[1, 0, 3, 2], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7], &[4, 5, 6, 7]];
 
+/// What stiffness, mass and stress of the kind use.
+pub const PROPERTIES: Properties = Properties {
+    shape: NaturalShape::Hexahedron,
+    stiffness_rules: [&GAUSS2; 3],
+    mass_rule: &GAUSS2,
+    constant_stress: false,
+    linear_dilatation: false,
+    incompatible_modes: true,
+    locking: Locking::Never,
+};
+
 /// Shape functions at `xi`.
-pub fn shape_functions(xi: [f64; 3]) -> [f64; HEX8_NODES] {
+pub fn shape_functions(xi: [f64; 3]) -> [f64; NODES] {
     NATURAL.map(|c| (1.0 + c[0] * xi[0]) * (1.0 + c[1] * xi[1]) * (1.0 + c[2] * xi[2]) / 8.0)
 }
 
 /// Derivatives by the natural coordinates. Shape `[8][3]`.
-pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; HEX8_NODES] {
+pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; NODES] {
     NATURAL.map(|c| {
         let s = [1.0 + c[0] * xi[0], 1.0 + c[1] * xi[1], 1.0 + c[2] * xi[2]];
         [c[0] * s[1] * s[2] / 8.0, c[1] * s[2] * s[0] / 8.0, c[2] * s[0] * s[1] / 8.0]
@@ -49,34 +64,13 @@ pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; HEX8_NODES] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::hex20::FACE_NODES;
-    use crate::element::quadrature::{GAUSS2, GAUSS3};
-    use crate::element::{checks, hex20};
+    use crate::element::hex20;
 
     #[test]
-    fn shape_functions_are_valid() {
-        checks::nodal(&NATURAL, shape_functions);
-        checks::complete(&NATURAL, shape_functions, 1);
-        checks::differences(&NATURAL, shape_functions, gradients);
+    fn corners_and_faces_are_those_of_the_hex20() {
         assert_eq!(NATURAL, hex20::NATURAL[..8]);
-    }
-
-    #[test]
-    fn faces_are_quad4() {
-        checks::faces(&NATURAL, shape_functions, &FACES);
-        checks::volume(&NATURAL, gradients, &FACES, &GAUSS2, 1e-13);
-        checks::volume(&NATURAL, gradients, &FACES, &GAUSS3, 1e-13);
-        for (face, nodes) in FACES.iter().zip(FACE_NODES) {
+        for (face, nodes) in FACES.iter().zip(hex20::FACES) {
             assert_eq!(**face, nodes[..4]);
         }
-    }
-
-    #[test]
-    fn the_hex20_passes_the_shared_checks() {
-        checks::nodal(&hex20::NATURAL, hex20::shape_functions);
-        checks::complete(&hex20::NATURAL, hex20::shape_functions, 2);
-        let faces: Vec<&[usize]> = FACE_NODES.iter().map(|f| f.as_slice()).collect();
-        checks::faces(&hex20::NATURAL, hex20::shape_functions, &faces);
-        checks::volume(&hex20::NATURAL, hex20::gradients, &faces, &GAUSS3, 1e-13);
     }
 }

@@ -1,109 +1,77 @@
 //! Kinds of volume elements.
 
-use super::hex20::FACE_NODES;
-use super::{hex8, hex20, pyramid5, pyramid13, tet4, tet10, wedge6, wedge15};
-use serde::{Deserialize, Serialize};
+use super::natural_shape::NaturalShape;
+use super::properties::Properties;
+use super::{ElementKind, on_kind};
 
-/// Largest number of nodes of a kind.
-pub const MAX_NODES: usize = 20;
+/// Makes [`ElementKind`] and the dispatch to its modules, from a list `Kind = module`.
+macro_rules! elements {
+    ($d:tt $($(#[$doc:meta])* $kind:ident = $module:ident;)+) => {
+        /// Kind of volume element; node order as in its module.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum ElementKind {
+            $($(#[$doc])* $kind,)+
+        }
 
-/// Kind of volume element; node order as in its module.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ElementKind {
-    /// 20-node serendipity hexahedron.
-    Hex20,
-    /// 15-node wedge.
-    Wedge15,
-    /// 13-node pyramid.
-    Pyramid13,
-    /// 10-node tetrahedron.
-    Tet10,
-    /// 8-node hexahedron.
-    Hex8,
-    /// 6-node wedge.
-    Wedge6,
-    /// 5-node pyramid.
-    Pyramid5,
-    /// 4-node tetrahedron.
-    Tet4,
-}
+        impl ElementKind {
+            /// All kinds.
+            pub const ALL: [ElementKind; [$($module::NODES),+].len()] = [$(ElementKind::$kind),+];
 
-const HEX20_FACES: [&[usize]; 6] =
-    [&FACE_NODES[0], &FACE_NODES[1], &FACE_NODES[2], &FACE_NODES[3], &FACE_NODES[4], &FACE_NODES[5]];
-
-/// Edges in the order of mid-side nodes.
-const HEX_EDGES: [[usize; 2]; 12] =
-    [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
-const WEDGE_EDGES: [[usize; 2]; 9] = [[0, 1], [1, 2], [2, 0], [3, 4], [4, 5], [5, 3], [0, 3], [1, 4], [2, 5]];
-const PYRAMID_EDGES: [[usize; 2]; 8] = [[0, 1], [1, 2], [2, 3], [3, 0], [0, 4], [1, 4], [2, 4], [3, 4]];
-const TET_EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
-
-macro_rules! on_kind {
-    ($kind:expr, $module:ident => $value:expr) => {
-        match $kind {
-            ElementKind::Hex20 => {
-                use hex20 as $module;
-                $value
-            }
-            ElementKind::Wedge15 => {
-                use wedge15 as $module;
-                $value
-            }
-            ElementKind::Pyramid13 => {
-                use pyramid13 as $module;
-                $value
-            }
-            ElementKind::Tet10 => {
-                use tet10 as $module;
-                $value
-            }
-            ElementKind::Hex8 => {
-                use hex8 as $module;
-                $value
-            }
-            ElementKind::Wedge6 => {
-                use wedge6 as $module;
-                $value
-            }
-            ElementKind::Pyramid5 => {
-                use pyramid5 as $module;
-                $value
-            }
-            ElementKind::Tet4 => {
-                use tet4 as $module;
-                $value
+            /// Name in scenes and reports.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(ElementKind::$kind => stringify!($module),)+
+                }
             }
         }
+
+        /// Evaluates an expression with the module of a kind; the module is a constant of each arm.
+        macro_rules! on_kind {
+            ($d kind:expr, $d module:ident => $d value:expr) => {
+                match $d kind {
+                    $($crate::element::ElementKind::$kind => {
+                        use $crate::element::$module as $d module;
+                        $d value
+                    })+
+                }
+            };
+        }
+        pub(crate) use on_kind;
     };
 }
+pub(super) use elements;
+
+/// Largest number of nodes of a kind.
+pub const MAX_NODES: usize = {
+    let (mut most, mut k) = (0, 0);
+    while k < ElementKind::ALL.len() {
+        let nodes = ElementKind::ALL[k].node_count();
+        if nodes > most {
+            most = nodes;
+        }
+        k += 1;
+    }
+    most
+};
 
 impl ElementKind {
-    /// All kinds.
-    pub const ALL: [ElementKind; 8] = [
-        ElementKind::Hex20,
-        ElementKind::Wedge15,
-        ElementKind::Pyramid13,
-        ElementKind::Tet10,
-        ElementKind::Hex8,
-        ElementKind::Wedge6,
-        ElementKind::Pyramid5,
-        ElementKind::Tet4,
-    ];
-
     /// Node count.
     #[inline]
     pub const fn node_count(self) -> usize {
-        match self {
-            ElementKind::Hex20 => 20,
-            ElementKind::Wedge15 => 15,
-            ElementKind::Pyramid13 => 13,
-            ElementKind::Tet10 => 10,
-            ElementKind::Hex8 => 8,
-            ElementKind::Wedge6 => 6,
-            ElementKind::Pyramid5 => 5,
-            ElementKind::Tet4 => 4,
-        }
+        on_kind!(self, element => element::NODES)
+    }
+
+    /// Rules and terms of stiffness, mass and stress.
+    #[inline]
+    pub const fn properties(self) -> &'static Properties {
+        on_kind!(self, element => &element::PROPERTIES)
+    }
+
+    /// Natural shape.
+    #[inline]
+    pub const fn shape(self) -> NaturalShape {
+        self.properties().shape
     }
 
     /// Number of corners.
@@ -114,40 +82,27 @@ impl ElementKind {
     /// Whether all nodes are corners.
     #[inline]
     pub const fn is_linear(self) -> bool {
-        matches!(self, ElementKind::Hex8 | ElementKind::Wedge6 | ElementKind::Pyramid5 | ElementKind::Tet4)
+        self as usize == self.linear() as usize
     }
 
     /// Kind of the same shape without mid-side nodes.
+    #[inline]
     pub const fn linear(self) -> ElementKind {
-        match self {
-            ElementKind::Hex20 | ElementKind::Hex8 => ElementKind::Hex8,
-            ElementKind::Wedge15 | ElementKind::Wedge6 => ElementKind::Wedge6,
-            ElementKind::Pyramid13 | ElementKind::Pyramid5 => ElementKind::Pyramid5,
-            ElementKind::Tet10 | ElementKind::Tet4 => ElementKind::Tet4,
+        match self.shape() {
+            NaturalShape::Hexahedron => ElementKind::Hex8,
+            NaturalShape::Wedge => ElementKind::Wedge6,
+            NaturalShape::Pyramid => ElementKind::Pyramid5,
+            NaturalShape::Tetrahedron => ElementKind::Tet4,
         }
     }
 
     /// Kind of the same shape with mid-side nodes.
     pub const fn quadratic(self) -> ElementKind {
-        match self {
-            ElementKind::Hex20 | ElementKind::Hex8 => ElementKind::Hex20,
-            ElementKind::Wedge15 | ElementKind::Wedge6 => ElementKind::Wedge15,
-            ElementKind::Pyramid13 | ElementKind::Pyramid5 => ElementKind::Pyramid13,
-            ElementKind::Tet10 | ElementKind::Tet4 => ElementKind::Tet10,
-        }
-    }
-
-    /// Name in scenes and reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            ElementKind::Hex20 => "hex20",
-            ElementKind::Wedge15 => "wedge15",
-            ElementKind::Pyramid13 => "pyramid13",
-            ElementKind::Tet10 => "tet10",
-            ElementKind::Hex8 => "hex8",
-            ElementKind::Wedge6 => "wedge6",
-            ElementKind::Pyramid5 => "pyramid5",
-            ElementKind::Tet4 => "tet4",
+        match self.shape() {
+            NaturalShape::Hexahedron => ElementKind::Hex20,
+            NaturalShape::Wedge => ElementKind::Wedge15,
+            NaturalShape::Pyramid => ElementKind::Pyramid13,
+            NaturalShape::Tetrahedron => ElementKind::Tet10,
         }
     }
 
@@ -158,35 +113,18 @@ impl ElementKind {
 
     /// Points at which the Jacobian of local node `node` is checked. For an apex, four points just below.
     pub fn limits_at_node(self, node: usize) -> &'static [[f64; 3]] {
-        if matches!(self.linear(), ElementKind::Pyramid5) && node == 4 {
-            &pyramid13::APEX_LIMITS
-        } else {
-            std::slice::from_ref(&self.natural()[node])
-        }
+        let limits = self.shape().limits_at_corner(node);
+        limits.unwrap_or_else(|| std::slice::from_ref(&self.natural()[node]))
     }
 
     /// Face nodes: corners counter-clockwise from outside, then mid-sides.
     pub fn faces(self) -> &'static [&'static [usize]] {
-        match self {
-            ElementKind::Hex20 => &HEX20_FACES,
-            ElementKind::Wedge15 => &wedge15::FACES,
-            ElementKind::Pyramid13 => &pyramid13::FACES,
-            ElementKind::Tet10 => &tet10::FACES,
-            ElementKind::Hex8 => &hex8::FACES,
-            ElementKind::Wedge6 => &wedge6::FACES,
-            ElementKind::Pyramid5 => &pyramid5::FACES,
-            ElementKind::Tet4 => &tet4::FACES,
-        }
+        on_kind!(self, element => &element::FACES)
     }
 
     /// Corners of each edge, in the order of mid-side nodes.
     pub fn edges(self) -> &'static [[usize; 2]] {
-        match self.linear() {
-            ElementKind::Hex8 => &HEX_EDGES,
-            ElementKind::Wedge6 => &WEDGE_EDGES,
-            ElementKind::Pyramid5 => &PYRAMID_EDGES,
-            _ => &TET_EDGES,
-        }
+        self.shape().edges()
     }
 
     /// Shape functions at the natural point `xi`, padded with zeros.
@@ -203,34 +141,17 @@ impl ElementKind {
 
     /// Volume of the natural shape.
     pub fn natural_volume(self) -> f64 {
-        match self.linear() {
-            ElementKind::Hex8 => 8.0,
-            ElementKind::Wedge6 => 1.0,
-            ElementKind::Pyramid5 => 4.0 / 3.0,
-            _ => 1.0 / 6.0,
-        }
+        self.shape().volume()
     }
 
     /// Centre of the natural shape.
     pub fn natural_centre(self) -> [f64; 3] {
-        const THIRD: f64 = 1.0 / 3.0;
-        match self.linear() {
-            ElementKind::Hex8 => [0.0; 3],
-            ElementKind::Wedge6 => [THIRD, THIRD, 0.0],
-            ElementKind::Pyramid5 => [0.0, 0.0, 0.25],
-            _ => [0.25; 3],
-        }
+        self.shape().centre()
     }
 
     /// Whether a natural point is inside the shape, with tolerance `slack`.
-    pub fn contains(self, [r, s, t]: [f64; 3], slack: f64) -> bool {
-        let low = -slack;
-        match self.linear() {
-            ElementKind::Hex8 => [r, s, t].iter().all(|c| c.abs() <= 1.0 + slack),
-            ElementKind::Wedge6 => r >= low && s >= low && r + s <= 1.0 + slack && t.abs() <= 1.0 + slack,
-            ElementKind::Pyramid5 => t >= low && t <= 1.0 + slack && r.abs().max(s.abs()) <= 1.0 - t + slack,
-            _ => r >= low && s >= low && t >= low && r + s + t <= 1.0 + slack,
-        }
+    pub fn contains(self, xi: [f64; 3], slack: f64) -> bool {
+        self.shape().contains(xi, slack)
     }
 }
 
@@ -244,6 +165,7 @@ fn padded<T: Copy + Default, const N: usize>(values: [T; N]) -> [T; MAX_NODES] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::element::checks;
 
     #[test]
     fn kinds_agree_with_their_modules() {
@@ -259,6 +181,24 @@ mod tests {
                 let quadratic =
                     ElementKind::ALL.iter().find(|k| !k.is_linear() && k.linear() == kind.linear());
                 quadratic.unwrap().node_count()
+            });
+        }
+    }
+
+    #[test]
+    fn shape_functions_and_faces_are_valid() {
+        for kind in ElementKind::ALL {
+            let [reduced, middle, full] = kind.properties().stiffness_rules;
+            on_kind!(kind, element => {
+                checks::nodal(&element::NATURAL, element::shape_functions);
+                checks::complete(&element::NATURAL, element::shape_functions, 2 - i32::from(kind.is_linear()));
+                checks::differences(&element::NATURAL, element::shape_functions, element::gradients);
+                checks::faces(&element::NATURAL, element::shape_functions, &element::FACES);
+                for (rule, tolerance) in
+                    [(kind.properties().mass_rule, 1e-13), (full, 1e-13), (middle, 1e-3), (reduced, 1e-3)]
+                {
+                    checks::volume(&element::NATURAL, element::gradients, &element::FACES, rule, tolerance);
+                }
             });
         }
     }

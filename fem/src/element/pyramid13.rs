@@ -20,11 +20,15 @@
 //! Limits: gradients at the apex depend on direction. Closer than `1 - t` = 1e-10 the limit along the axis
 //! (p = q = 0) is used, exact for quadratic fields.
 
+use super::natural_shape::NaturalShape;
+use super::properties::{Locking, Properties};
+use super::quadrature::{PYRAMID18, PYRAMID27};
+
 /// Node count.
-pub const PYRAMID13_NODES: usize = 13;
+pub const NODES: usize = 13;
 
 /// Natural node coordinates. Shape `[13][3]`.
-pub const NATURAL: [[f64; 3]; PYRAMID13_NODES] = [
+pub const NATURAL: [[f64; 3]; NODES] = [
     [-1.0, -1.0, 0.0],
     [1.0, -1.0, 0.0],
     [1.0, 1.0, 0.0],
@@ -53,12 +57,6 @@ pub const FACES: [&[usize]; 5] = [
 /// Height `u = 1 - t` that counts as the apex.
 const APEX: f64 = 1e-10;
 
-/// Points below the apex on the uprights 0-4, 1-4, 2-4, 3-4.
-pub(super) const APEX_LIMITS: [[f64; 3]; 4] = {
-    const U: f64 = 1e-7;
-    [[-U, -U, 1.0 - U], [U, -U, 1.0 - U], [U, U, 1.0 - U], [-U, U, 1.0 - U]]
-};
-
 /// Returns (u, p, q).
 #[inline]
 pub(super) fn section(xi: [f64; 3]) -> (f64, f64, f64) {
@@ -66,11 +64,22 @@ pub(super) fn section(xi: [f64; 3]) -> (f64, f64, f64) {
     if u.abs() < APEX { (u, 0.0, 0.0) } else { (u, xi[0] / u, xi[1] / u) }
 }
 
+/// What stiffness, mass and stress of the kind use.
+pub const PROPERTIES: Properties = Properties {
+    shape: NaturalShape::Pyramid,
+    stiffness_rules: [&PYRAMID18, &PYRAMID18, &PYRAMID27],
+    mass_rule: &PYRAMID27,
+    constant_stress: false,
+    linear_dilatation: false,
+    incompatible_modes: false,
+    locking: Locking::Pointwise,
+};
+
 /// Shape functions at `xi`.
-pub fn shape_functions(xi: [f64; 3]) -> [f64; PYRAMID13_NODES] {
+pub fn shape_functions(xi: [f64; 3]) -> [f64; NODES] {
     let (u, p, q) = section(xi);
     let t = xi[2];
-    let mut n = [0.0; PYRAMID13_NODES];
+    let mut n = [0.0; NODES];
     for (i, c) in NATURAL[..4].iter().enumerate() {
         let (a, b) = (c[0] * p, c[1] * q);
         let bilinear = u * (1.0 + a) * (1.0 + b);
@@ -88,11 +97,11 @@ pub fn shape_functions(xi: [f64; 3]) -> [f64; PYRAMID13_NODES] {
 /// Derivatives by (x, y, t); at the apex the limit along the axis. Shape `[13][3]`.
 ///
 /// Chain rule: `F,x = F,p / u`, `F,y = F,q / u`, `F,t = p F,x + q F,y - F,u`.
-pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; PYRAMID13_NODES] {
+pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; NODES] {
     let (u, p, q) = section(xi);
     let t = xi[2];
     let chain = |x: f64, y: f64, fu: f64| [x, y, p * x + q * y - fu];
-    let mut d = [[0.0; 3]; PYRAMID13_NODES];
+    let mut d = [[0.0; 3]; NODES];
     for (i, c) in NATURAL[..4].iter().enumerate() {
         let (a, b) = (1.0 + c[0] * p, 1.0 + c[1] * q);
         let g = u * (a + b - 2.0) - 1.0;
@@ -115,25 +124,6 @@ pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; PYRAMID13_NODES] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::checks;
-    use crate::element::quadrature::{PYRAMID8, PYRAMID18, PYRAMID27};
-
-    #[test]
-    fn shape_functions_are_valid() {
-        checks::nodal(&NATURAL, shape_functions);
-        checks::complete(&NATURAL, shape_functions, 2);
-        checks::differences(&NATURAL, shape_functions, gradients);
-        let sides = [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4)];
-        checks::mid_sides(&NATURAL, 5, &sides);
-    }
-
-    #[test]
-    fn faces_close_element() {
-        checks::faces(&NATURAL, shape_functions, &FACES);
-        checks::volume(&NATURAL, gradients, &FACES, &PYRAMID27, 1e-13);
-        checks::volume(&NATURAL, gradients, &FACES, &PYRAMID18, 1e-13);
-        checks::volume(&NATURAL, gradients, &FACES, &PYRAMID8, 1e-3);
-    }
 
     #[test]
     fn apex_gradients_are_exact_for_quadratics() {

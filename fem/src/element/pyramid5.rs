@@ -12,23 +12,37 @@
 //! Limits: at the apex the limit along the axis (p = q = 0) is used, exact for linear fields. Meshes of
 //! pyramids only lock slightly near incompressibility.
 
+use super::natural_shape::NaturalShape;
+use super::properties::{Locking, Properties};
 use super::pyramid13::section;
+use super::quadrature::{PYRAMID8, PYRAMID27};
 
 /// Node count.
-pub const PYRAMID5_NODES: usize = 5;
+pub const NODES: usize = 5;
 
 /// Natural node coordinates. Shape `[5][3]`.
-pub const NATURAL: [[f64; 3]; PYRAMID5_NODES] =
+pub const NATURAL: [[f64; 3]; NODES] =
     [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// Face nodes, counter-clockwise from outside: base ([`super::quad4`]), then sides 0-1, 1-2, 2-3, 3-0
 /// ([`super::tri3`]).
 pub const FACES: [&[usize]; 5] = [&[0, 3, 2, 1], &[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[3, 0, 4]];
 
+/// What stiffness, mass and stress of the kind use.
+pub const PROPERTIES: Properties = Properties {
+    shape: NaturalShape::Pyramid,
+    stiffness_rules: [&PYRAMID8; 3],
+    mass_rule: &PYRAMID27,
+    constant_stress: true,
+    linear_dilatation: false,
+    incompatible_modes: false,
+    locking: Locking::Always,
+};
+
 /// Shape functions at `xi`.
-pub fn shape_functions(xi: [f64; 3]) -> [f64; PYRAMID5_NODES] {
+pub fn shape_functions(xi: [f64; 3]) -> [f64; NODES] {
     let (u, p, q) = section(xi);
-    let mut n = [0.0; PYRAMID5_NODES];
+    let mut n = [0.0; NODES];
     for (i, c) in NATURAL[..4].iter().enumerate() {
         n[i] = u * (1.0 + c[0] * p) * (1.0 + c[1] * q) / 4.0;
     }
@@ -37,9 +51,9 @@ pub fn shape_functions(xi: [f64; 3]) -> [f64; PYRAMID5_NODES] {
 }
 
 /// Derivatives by (x, y, t). Shape `[5][3]`.
-pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; PYRAMID5_NODES] {
+pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; NODES] {
     let (_, p, q) = section(xi);
-    let mut d = [[0.0; 3]; PYRAMID5_NODES];
+    let mut d = [[0.0; 3]; NODES];
     for (i, c) in NATURAL[..4].iter().enumerate() {
         let (a, b) = (c[0] * p, c[1] * q);
         d[i] = [c[0] * (1.0 + b) / 4.0, c[1] * (1.0 + a) / 4.0, (a * b - 1.0) / 4.0];
@@ -51,22 +65,6 @@ pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; PYRAMID5_NODES] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::checks;
-    use crate::element::quadrature::{PYRAMID8, PYRAMID27};
-
-    #[test]
-    fn shape_functions_are_valid() {
-        checks::nodal(&NATURAL, shape_functions);
-        checks::complete(&NATURAL, shape_functions, 1);
-        checks::differences(&NATURAL, shape_functions, gradients);
-    }
-
-    #[test]
-    fn faces_close_element() {
-        checks::faces(&NATURAL, shape_functions, &FACES);
-        checks::volume(&NATURAL, gradients, &FACES, &PYRAMID8, 1e-13);
-        checks::volume(&NATURAL, gradients, &FACES, &PYRAMID27, 1e-13);
-    }
 
     #[test]
     fn apex_gradients_are_axis_limit() {

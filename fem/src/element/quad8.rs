@@ -65,7 +65,6 @@ pub fn second_gradients(xi: [f64; 2]) -> [[f64; 3]; QUAD8_NODES] {
 mod tests {
     use super::*;
     use crate::element::hex20;
-    use crate::element::hex20::FACE_NODES;
 
     #[test]
     fn shape_functions_are_nodal() {
@@ -97,7 +96,7 @@ mod tests {
 
     #[test]
     fn faces_of_the_hex20_are_quad8() {
-        for nodes in FACE_NODES {
+        for nodes in hex20::FACES {
             let xi = [0.23, -0.48];
             let n8 = shape_functions(xi);
             let mut natural = [0.0; 3];

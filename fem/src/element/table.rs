@@ -4,11 +4,9 @@
 //! for products of linear strains ("full"). The mass rule is exact for products of shape functions on
 //! flat-faced elements.
 
-use super::kind::{ElementKind, MAX_NODES};
-use super::quadrature::{
-    GAUSS2, GAUSS3, PYRAMID8, PYRAMID18, PYRAMID27, Quadrature, TET1, TET4, TET14, VolumePoint, WEDGE6,
-    WEDGE9, WEDGE21,
-};
+use super::ElementKind;
+use super::kind::MAX_NODES;
+use super::quadrature::{Quadrature, VolumePoint};
 use std::sync::OnceLock;
 
 /// Integration point with shape functions.
@@ -27,44 +25,18 @@ pub struct IntegrationPoint {
 /// Integration points of the stiffness.
 #[inline]
 pub fn stiffness_points(kind: ElementKind, rule: Quadrature) -> &'static [IntegrationPoint] {
-    static TABLES: [[OnceLock<Vec<IntegrationPoint>>; 3]; 8] = [const { [const { OnceLock::new() }; 3] }; 8];
-    TABLES[kind as usize][rule as usize].get_or_init(|| table(kind, stiffness_rule(kind, rule)))
+    static TABLES: [[OnceLock<Vec<IntegrationPoint>>; 3]; ElementKind::ALL.len()] =
+        [const { [const { OnceLock::new() }; 3] }; ElementKind::ALL.len()];
+    let rules = &kind.properties().stiffness_rules;
+    TABLES[kind as usize][rule as usize].get_or_init(|| table(kind, rules[rule as usize]))
 }
 
 /// Integration points of the mass.
 #[inline]
 pub fn mass_points(kind: ElementKind) -> &'static [IntegrationPoint] {
-    static TABLES: [OnceLock<Vec<IntegrationPoint>>; 8] = [const { OnceLock::new() }; 8];
-    TABLES[kind as usize].get_or_init(|| table(kind, mass_rule(kind)))
-}
-
-fn stiffness_rule(kind: ElementKind, rule: Quadrature) -> &'static [VolumePoint] {
-    let full = rule == Quadrature::Gauss3;
-    match kind {
-        ElementKind::Hex20 => rule.points(),
-        ElementKind::Wedge15 if full => &WEDGE21,
-        ElementKind::Wedge15 => &WEDGE9,
-        ElementKind::Pyramid13 if full => &PYRAMID27,
-        ElementKind::Pyramid13 => &PYRAMID18,
-        ElementKind::Tet10 if full => &TET14,
-        ElementKind::Tet10 => &TET4,
-        ElementKind::Hex8 => &GAUSS2,
-        ElementKind::Wedge6 => &WEDGE6,
-        ElementKind::Pyramid5 => &PYRAMID8,
-        ElementKind::Tet4 => &TET1,
-    }
-}
-
-fn mass_rule(kind: ElementKind) -> &'static [VolumePoint] {
-    match kind {
-        ElementKind::Hex20 => &GAUSS3,
-        ElementKind::Wedge15 => &WEDGE21,
-        ElementKind::Pyramid13 | ElementKind::Pyramid5 => &PYRAMID27,
-        ElementKind::Tet10 => &TET14,
-        ElementKind::Hex8 => &GAUSS2,
-        ElementKind::Wedge6 => &WEDGE6,
-        ElementKind::Tet4 => &TET4,
-    }
+    static TABLES: [OnceLock<Vec<IntegrationPoint>>; ElementKind::ALL.len()] =
+        [const { OnceLock::new() }; ElementKind::ALL.len()];
+    TABLES[kind as usize].get_or_init(|| table(kind, kind.properties().mass_rule))
 }
 
 fn table(kind: ElementKind, rule: &[VolumePoint]) -> Vec<IntegrationPoint> {

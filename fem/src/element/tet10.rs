@@ -13,13 +13,16 @@
 //!
 //! Source: Zienkiewicz and Taylor (2000), vol. 1, chapter 8.
 
+use super::natural_shape::NaturalShape;
+use super::properties::{Locking, Properties};
+use super::quadrature::{TET4, TET14};
 use super::tet4;
 
 /// Node count.
-pub const TET10_NODES: usize = 10;
+pub const NODES: usize = 10;
 
 /// Natural node coordinates. Shape `[10][3]`.
-pub const NATURAL: [[f64; 3]; TET10_NODES] = [
+pub const NATURAL: [[f64; 3]; NODES] = [
     [0.0, 0.0, 0.0],
     [1.0, 0.0, 0.0],
     [0.0, 1.0, 0.0],
@@ -38,10 +41,21 @@ pub const FACES: [&[usize]; 4] =
 
 const SIDES: [(usize, usize); 6] = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)];
 
+/// What stiffness, mass and stress of the kind use.
+pub const PROPERTIES: Properties = Properties {
+    shape: NaturalShape::Tetrahedron,
+    stiffness_rules: [&TET4, &TET4, &TET14],
+    mass_rule: &TET14,
+    constant_stress: false,
+    linear_dilatation: false,
+    incompatible_modes: false,
+    locking: Locking::Pointwise,
+};
+
 /// Shape functions at `xi`.
-pub fn shape_functions(xi: [f64; 3]) -> [f64; TET10_NODES] {
+pub fn shape_functions(xi: [f64; 3]) -> [f64; NODES] {
     let l = tet4::shape_functions(xi);
-    let mut n = [0.0; TET10_NODES];
+    let mut n = [0.0; NODES];
     for i in 0..4 {
         n[i] = l[i] * (2.0 * l[i] - 1.0);
     }
@@ -52,9 +66,9 @@ pub fn shape_functions(xi: [f64; 3]) -> [f64; TET10_NODES] {
 }
 
 /// Derivatives by (r, s, t). Shape `[10][3]`.
-pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; TET10_NODES] {
+pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; NODES] {
     let (l, dl) = (tet4::shape_functions(xi), tet4::gradients(xi));
-    let mut d = [[0.0; 3]; TET10_NODES];
+    let mut d = [[0.0; 3]; NODES];
     for k in 0..3 {
         for i in 0..4 {
             d[i][k] = (4.0 * l[i] - 1.0) * dl[i][k];
@@ -64,26 +78,4 @@ pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; TET10_NODES] {
         }
     }
     d
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::element::checks;
-    use crate::element::quadrature::{TET14, TET24};
-
-    #[test]
-    fn shape_functions_are_valid() {
-        checks::nodal(&NATURAL, shape_functions);
-        checks::complete(&NATURAL, shape_functions, 2);
-        checks::differences(&NATURAL, shape_functions, gradients);
-        checks::mid_sides(&NATURAL, 4, &SIDES);
-    }
-
-    #[test]
-    fn faces_close_element() {
-        checks::faces(&NATURAL, shape_functions, &FACES);
-        checks::volume(&NATURAL, gradients, &FACES, &TET14, 1e-13);
-        checks::volume(&NATURAL, gradients, &FACES, &TET24, 1e-13);
-    }
 }

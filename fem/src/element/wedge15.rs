@@ -19,13 +19,16 @@
 //!
 //! Source: Zienkiewicz and Taylor (2000), vol. 1, chapter 8.
 
+use super::natural_shape::NaturalShape;
+use super::properties::{Locking, Properties};
+use super::quadrature::{WEDGE9, WEDGE21};
 use super::tri3;
 
 /// Node count.
-pub const WEDGE15_NODES: usize = 15;
+pub const NODES: usize = 15;
 
 /// Natural node coordinates. Shape `[15][3]`.
-pub const NATURAL: [[f64; 3]; WEDGE15_NODES] = [
+pub const NATURAL: [[f64; 3]; NODES] = [
     [0.0, 0.0, -1.0],
     [1.0, 0.0, -1.0],
     [0.0, 1.0, -1.0],
@@ -53,10 +56,21 @@ pub const FACES: [&[usize]; 5] = [
     &[2, 0, 3, 5, 8, 12, 11, 14],
 ];
 
+/// What stiffness, mass and stress of the kind use.
+pub const PROPERTIES: Properties = Properties {
+    shape: NaturalShape::Wedge,
+    stiffness_rules: [&WEDGE9, &WEDGE9, &WEDGE21],
+    mass_rule: &WEDGE21,
+    constant_stress: false,
+    linear_dilatation: false,
+    incompatible_modes: false,
+    locking: Locking::Pointwise,
+};
+
 /// Shape functions at `xi`.
-pub fn shape_functions(xi: [f64; 3]) -> [f64; WEDGE15_NODES] {
+pub fn shape_functions(xi: [f64; 3]) -> [f64; NODES] {
     let (l, t) = (tri3::shape_functions([xi[0], xi[1]]), xi[2]);
-    let mut n = [0.0; WEDGE15_NODES];
+    let mut n = [0.0; NODES];
     for i in 0..3 {
         let pair = 2.0 * l[i] * l[(i + 1) % 3];
         n[i] = l[i] * (1.0 - t) * (2.0 * l[i] - t - 2.0) / 2.0;
@@ -69,10 +83,10 @@ pub fn shape_functions(xi: [f64; 3]) -> [f64; WEDGE15_NODES] {
 }
 
 /// Derivatives by (r, s, t). Shape `[15][3]`.
-pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; WEDGE15_NODES] {
+pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; NODES] {
     let (l, dl) = (tri3::shape_functions([xi[0], xi[1]]), tri3::gradients([xi[0], xi[1]]));
     let t = xi[2];
-    let mut d = [[0.0; 3]; WEDGE15_NODES];
+    let mut d = [[0.0; 3]; NODES];
     for i in 0..3 {
         let j = (i + 1) % 3;
         for k in 0..2 {
@@ -90,27 +104,4 @@ pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; WEDGE15_NODES] {
         d[12 + i][2] = -2.0 * l[i] * t;
     }
     d
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::element::checks;
-    use crate::element::quadrature::{WEDGE9, WEDGE21};
-
-    #[test]
-    fn shape_functions_are_valid() {
-        checks::nodal(&NATURAL, shape_functions);
-        checks::complete(&NATURAL, shape_functions, 2);
-        checks::differences(&NATURAL, shape_functions, gradients);
-        let sides = [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)];
-        checks::mid_sides(&NATURAL, 6, &sides);
-    }
-
-    #[test]
-    fn faces_close_element() {
-        checks::faces(&NATURAL, shape_functions, &FACES);
-        checks::volume(&NATURAL, gradients, &FACES, &WEDGE21, 1e-13);
-        checks::volume(&NATURAL, gradients, &FACES, &WEDGE9, 1e-3);
-    }
 }

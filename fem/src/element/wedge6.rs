@@ -13,23 +13,37 @@
 //! Source: Zienkiewicz and Taylor (2000), vol. 1, chapter 8. Limits: too stiff in bending. Locks near
 //! incompressibility in spite of mean dilatation.
 
+use super::natural_shape::NaturalShape;
+use super::properties::{Locking, Properties};
+use super::quadrature::WEDGE6;
 use super::tri3;
 
 /// Node count.
-pub const WEDGE6_NODES: usize = 6;
+pub const NODES: usize = 6;
 
 /// Natural node coordinates. Shape `[6][3]`.
-pub const NATURAL: [[f64; 3]; WEDGE6_NODES] =
+pub const NATURAL: [[f64; 3]; NODES] =
     [[0.0, 0.0, -1.0], [1.0, 0.0, -1.0], [0.0, 1.0, -1.0], [0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
 
 /// Face nodes, counter-clockwise from outside: bottom, top ([`super::tri3`]), sides 0-1, 1-2, 2-0
 /// ([`super::quad4`]).
 pub const FACES: [&[usize]; 5] = [&[0, 2, 1], &[3, 4, 5], &[0, 1, 4, 3], &[1, 2, 5, 4], &[2, 0, 3, 5]];
 
+/// What stiffness, mass and stress of the kind use.
+pub const PROPERTIES: Properties = Properties {
+    shape: NaturalShape::Wedge,
+    stiffness_rules: [&WEDGE6; 3],
+    mass_rule: &WEDGE6,
+    constant_stress: false,
+    linear_dilatation: false,
+    incompatible_modes: false,
+    locking: Locking::Always,
+};
+
 /// Shape functions at `xi`.
-pub fn shape_functions(xi: [f64; 3]) -> [f64; WEDGE6_NODES] {
+pub fn shape_functions(xi: [f64; 3]) -> [f64; NODES] {
     let l = tri3::shape_functions([xi[0], xi[1]]);
-    let mut n = [0.0; WEDGE6_NODES];
+    let mut n = [0.0; NODES];
     for i in 0..3 {
         n[i] = l[i] * (1.0 - xi[2]) / 2.0;
         n[3 + i] = l[i] * (1.0 + xi[2]) / 2.0;
@@ -38,9 +52,9 @@ pub fn shape_functions(xi: [f64; 3]) -> [f64; WEDGE6_NODES] {
 }
 
 /// Derivatives by (r, s, t). Shape `[6][3]`.
-pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; WEDGE6_NODES] {
+pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; NODES] {
     let (l, dl) = (tri3::shape_functions([xi[0], xi[1]]), tri3::gradients([xi[0], xi[1]]));
-    let mut d = [[0.0; 3]; WEDGE6_NODES];
+    let mut d = [[0.0; 3]; NODES];
     for i in 0..3 {
         for k in 0..2 {
             d[i][k] = dl[i][k] * (1.0 - xi[2]) / 2.0;
@@ -50,25 +64,4 @@ pub fn gradients(xi: [f64; 3]) -> [[f64; 3]; WEDGE6_NODES] {
         d[3 + i][2] = l[i] / 2.0;
     }
     d
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::element::checks;
-    use crate::element::quadrature::{WEDGE6, WEDGE21};
-
-    #[test]
-    fn shape_functions_are_valid() {
-        checks::nodal(&NATURAL, shape_functions);
-        checks::complete(&NATURAL, shape_functions, 1);
-        checks::differences(&NATURAL, shape_functions, gradients);
-    }
-
-    #[test]
-    fn faces_close_element() {
-        checks::faces(&NATURAL, shape_functions, &FACES);
-        checks::volume(&NATURAL, gradients, &FACES, &WEDGE6, 1e-13);
-        checks::volume(&NATURAL, gradients, &FACES, &WEDGE21, 1e-13);
-    }
 }

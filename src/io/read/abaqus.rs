@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use trackbed_fem::ElementKind;
+use trackbed_fem::element::NaturalShape;
 
 use super::abaqus_data as data;
 use super::abaqus_faces as faces;
@@ -20,6 +21,7 @@ use super::abaqus_lines::{Block, read_blocks};
 use super::abaqus_sets::{self as sets, Members};
 use super::degenerate::from_brick;
 use super::error::ReadError;
+use super::foreign_elements::{FOREIGN, foreign};
 use super::mesh_file::{Builder, MeshFile};
 use super::number;
 
@@ -254,12 +256,10 @@ fn element_type(name: &str) -> Type {
     match count {
         "20" => Type::Brick(20),
         "8" => Type::Brick(8),
-        "15" => Type::Solid(ElementKind::Wedge15),
-        "10" => Type::Solid(ElementKind::Tet10),
-        "6" => Type::Solid(ElementKind::Wedge6),
-        "5" => Type::Solid(ElementKind::Pyramid5),
-        "4" => Type::Solid(ElementKind::Tet4),
-        _ => Type::Unknown,
+        _ => {
+            let row = FOREIGN.iter().find(|row| row.abaqus.0.strip_prefix("C3D") == Some(count));
+            row.map_or(Type::Unknown, |row| Type::Solid(row.kind))
+        }
     }
 }
 
@@ -305,12 +305,12 @@ fn elements(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(),
             return Err(builder.fault(line, key, found, count.to_string()));
         }
         let (kind, nodes) = match &kind {
-            Type::Solid(kind) => (*kind, nodes),
+            Type::Solid(kind) => (*kind, foreign(*kind).abaqus.1.read(&nodes)),
             _ => from_brick(&nodes).map_err(|fault| {
                 builder.fault(line, format!("element {id} ({name})"), fault.found, fault.expected)
             })?,
         };
-        if count == 8 && kind != ElementKind::Hex8 || count == 20 && kind.linear() != ElementKind::Hex8 {
+        if [8, 20].contains(&count) && kind.shape() != NaturalShape::Hexahedron {
             deck.folded.insert(id);
         }
         let label = format!("{name} {}", kind.name());

@@ -5,11 +5,13 @@
 use std::collections::HashSet;
 
 use trackbed_fem::ElementKind;
+use trackbed_fem::element::NaturalShape;
 
 use super::abaqus_lines::Block;
 use super::degenerate::to_brick;
 use super::error::ReadError;
 use super::faces::key;
+use super::foreign_elements::{Layout, foreign};
 use super::mesh_file::Builder;
 
 const BRICK: &[&[usize]] =
@@ -20,14 +22,13 @@ const TETRAHEDRON: &[&[usize]] = &[&[0, 1, 2], &[0, 3, 1], &[1, 3, 2], &[2, 3, 0
 
 /// Corner nodes of faces S1, S2, ….
 fn faces(kind: ElementKind, nodes: &[u32], folded: bool) -> Vec<Vec<u32>> {
-    let (of_kind, corners) = match kind.linear() {
-        _ if folded || kind == ElementKind::Pyramid13 => {
-            (BRICK, to_brick(kind.linear(), &nodes[..kind.corner_count()]))
-        }
-        ElementKind::Hex8 => (BRICK, nodes[..8].to_vec()),
-        ElementKind::Wedge6 => (WEDGE, nodes[..6].to_vec()),
-        ElementKind::Pyramid5 => (PYRAMID, nodes[..5].to_vec()),
-        _ => (TETRAHEDRON, nodes[..4].to_vec()),
+    let nodes = &nodes[..kind.corner_count()];
+    let (of_kind, corners) = match kind.shape() {
+        _ if folded || foreign(kind).abaqus.1 == Layout::Brick => (BRICK, to_brick(kind.linear(), nodes)),
+        NaturalShape::Hexahedron => (BRICK, nodes.to_vec()),
+        NaturalShape::Wedge => (WEDGE, nodes.to_vec()),
+        NaturalShape::Pyramid => (PYRAMID, nodes.to_vec()),
+        NaturalShape::Tetrahedron => (TETRAHEDRON, nodes.to_vec()),
     };
     let distinct = |local: &&[usize]| {
         let mut face: Vec<u32> = local.iter().map(|l| corners[*l]).collect();

@@ -13,7 +13,6 @@ use trackbed_fem::ElementKind;
 
 struct Form {
     kind: ElementKind,
-    linear: ElementKind,
     /// Brick positions of the nodes, corners first.
     nodes: &'static [usize],
     /// Repeating and repeated positions.
@@ -23,25 +22,21 @@ struct Form {
 const FORMS: [Form; 4] = [
     Form {
         kind: ElementKind::Hex20,
-        linear: ElementKind::Hex8,
         nodes: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19],
         repeats: &[],
     },
     Form {
         kind: ElementKind::Wedge15,
-        linear: ElementKind::Wedge6,
         nodes: &[0, 1, 2, 4, 5, 6, 8, 9, 11, 12, 13, 15, 16, 17, 18],
         repeats: &[(3, 2), (7, 6), (10, 2), (14, 6), (19, 18)],
     },
     Form {
         kind: ElementKind::Pyramid13,
-        linear: ElementKind::Pyramid5,
         nodes: &[0, 1, 2, 3, 4, 8, 9, 10, 11, 16, 17, 18, 19],
         repeats: &[(5, 4), (6, 4), (7, 4), (12, 4), (13, 4), (14, 4), (15, 4)],
     },
     Form {
         kind: ElementKind::Tet10,
-        linear: ElementKind::Tet4,
         nodes: &[0, 1, 2, 4, 8, 9, 11, 16, 17, 18],
         repeats: &[(3, 2), (5, 4), (6, 4), (7, 4), (10, 2), (12, 4), (13, 4), (14, 4), (15, 4), (19, 18)],
     },
@@ -74,11 +69,12 @@ pub fn from_brick(ids: &[u32]) -> Result<(ElementKind, Vec<u32>), Fault> {
     // Most degenerate first; the plain brick matches any nodes.
     let order = [3, 2, 1, 0].map(|f| &FORMS[f]);
     let form = order.into_iter().find(|form| holds(form)).unwrap_or(&FORMS[0]);
-    let corner_count = form.linear.node_count();
+    let corner_count = form.kind.corner_count();
     let mids = form.nodes[corner_count..].iter().filter(|p| **p < ids.len());
     let missing = mids.clone().find(|p| ids[**p] == 0);
     let linear = mids.clone().all(|p| ids[*p] == 0);
-    let (kind, count) = if linear { (form.linear, corner_count) } else { (form.kind, form.nodes.len()) };
+    let (kind, count) =
+        if linear { (form.kind.linear(), corner_count) } else { (form.kind, form.nodes.len()) };
     if let (false, Some(p)) = (linear, missing) {
         return Err(Fault {
             found: format!("no node {}, and other mid-side nodes are there", LETTERS[*p]),
@@ -104,7 +100,7 @@ pub fn from_brick(ids: &[u32]) -> Result<(ElementKind, Vec<u32>), Fault> {
 
 /// Brick of 20 or 8 nodes that [`from_brick`] reads as this element.
 pub fn to_brick(kind: ElementKind, nodes: &[u32]) -> Vec<u32> {
-    let form = FORMS.iter().find(|form| form.linear == kind.linear()).unwrap_or(&FORMS[0]);
+    let form = FORMS.iter().find(|form| form.kind.shape() == kind.shape()).unwrap_or(&FORMS[0]);
     let mut brick = vec![0; if kind.is_linear() { 8 } else { 20 }];
     for (p, node) in form.nodes.iter().zip(nodes) {
         brick[*p] = *node;

@@ -9,8 +9,7 @@
 //!
 //! A volume in several groups takes the material of the first and joins all sets.
 //!
-//! Source: Gmsh Reference Manual, "MSH file format" and "Node ordering". Mid-side nodes follow another edge
-//! order than in ANSYS, Abaqus and VTK.
+//! Source: Gmsh Reference Manual, "MSH file format".
 //!
 //! Not supported: nodes inside faces or volumes (hex27).
 
@@ -21,38 +20,11 @@ use trackbed_fem::{ElementKind, Mesh};
 
 use super::error::ReadError;
 use super::faces::{self, Faces};
+use super::foreign_elements::{FOREIGN, foreign};
 use super::gmsh4;
-use super::mesh_file::{Builder, MeshFile, order_from_edges, read_bytes};
+use super::mesh_file::{Builder, MeshFile, read_bytes};
 use super::tokens::{Encoding, Tokens};
 use super::unit;
-
-/// Edges in the order of Gmsh's mid-side nodes (figures of "Node ordering").
-const HEX: [[usize; 2]; 12] =
-    [[0, 1], [0, 3], [0, 4], [1, 2], [1, 5], [2, 3], [2, 6], [3, 7], [4, 5], [4, 7], [5, 6], [6, 7]];
-const WEDGE: [[usize; 2]; 9] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 4], [2, 5], [3, 4], [3, 5], [4, 5]];
-const PYRAMID: [[usize; 2]; 8] = [[0, 1], [0, 3], [0, 4], [1, 2], [1, 4], [2, 3], [2, 4], [3, 4]];
-const TET: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [2, 3], [1, 3]];
-
-pub(crate) const TYPES: [(i32, ElementKind); 8] = [
-    (17, ElementKind::Hex20),
-    (18, ElementKind::Wedge15),
-    (19, ElementKind::Pyramid13),
-    (11, ElementKind::Tet10),
-    (5, ElementKind::Hex8),
-    (6, ElementKind::Wedge6),
-    (7, ElementKind::Pyramid5),
-    (4, ElementKind::Tet4),
-];
-
-/// Gmsh position of each node of a kind.
-pub(crate) fn order(kind: ElementKind) -> Vec<usize> {
-    match kind.linear() {
-        ElementKind::Hex8 => order_from_edges(kind, &HEX),
-        ElementKind::Wedge6 => order_from_edges(kind, &WEDGE),
-        ElementKind::Pyramid5 => order_from_edges(kind, &PYRAMID),
-        _ => order_from_edges(kind, &TET),
-    }
-}
 
 const LOWER: [(i32, usize, usize); 14] = [
     (15, 0, 1),
@@ -79,8 +51,8 @@ pub(super) enum Shape {
 }
 
 pub(super) fn shape(tokens: &mut Tokens, kind: i32) -> Result<Shape, ReadError> {
-    if let Some((_, kind)) = TYPES.iter().find(|(number, _)| *number == kind) {
-        return Ok(Shape::Volume(*kind));
+    if let Some(row) = FOREIGN.iter().find(|row| row.gmsh.0 == kind) {
+        return Ok(Shape::Volume(row.kind));
     }
     if let Some(&(_, dimension, nodes)) = LOWER.iter().find(|(number, ..)| *number == kind) {
         let corners = if QUADRANGLES.contains(&kind) { 4 } else { 3.min(nodes) };
@@ -342,8 +314,8 @@ fn put_together(mut builder: Builder, mut sections: Sections) -> Result<MeshFile
         let is_zero = |group: &u32| sections.names.get(&(3, *group)).is_some_and(|name| name == MATERIAL_0);
         let material = raw.groups.first().filter(|group| !is_zero(group)).copied();
         let material = material.unwrap_or(if raw.groups.is_empty() { own } else { 0 });
-        let nodes: Vec<u32> = order(raw.kind).iter().map(|p| raw.nodes[*p]).collect();
-        let number = TYPES.iter().find(|(_, kind)| *kind == raw.kind).map_or(0, |t| t.0);
+        let (number, layout) = foreign(raw.kind).gmsh;
+        let nodes = layout.read(&raw.nodes);
         let name = format!("type {number} {}", raw.kind.name());
         builder.element(raw.line, raw.id, material, (raw.kind, &name), &nodes)?;
         let index = builder.made.mesh.element_count() as u32 - 1;

@@ -307,14 +307,3 @@ pub(super) fn read_text(file: &Path, what: &str) -> Result<String, ReadError> {
     let text = String::from_utf8_lossy(&read_bytes(file, what)?).into_owned();
     Ok(text.strip_prefix('\u{feff}').map(str::to_string).unwrap_or(text))
 }
-
-/// Format position of each node, from the format's corner pairs of mid-side nodes.
-pub(crate) fn order_from_edges(kind: ElementKind, edges: &[[usize; 2]]) -> Vec<usize> {
-    let corners = kind.corner_count();
-    let mid = |edge: &[usize; 2]| {
-        let same = |other: &[usize; 2]| other == edge || *other == [edge[1], edge[0]];
-        corners + edges.iter().position(same).expect("a format lists every edge of a kind once")
-    };
-    let mids = if kind.is_linear() { &[][..] } else { kind.edges() };
-    (0..corners).chain(mids.iter().map(mid)).collect()
-}

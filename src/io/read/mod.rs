@@ -16,6 +16,7 @@ pub(crate) mod degenerate;
 mod element_list;
 mod error;
 pub(crate) mod faces;
+pub(crate) mod foreign_elements;
 mod geotiff;
 pub(crate) mod gmsh;
 mod gmsh4;

@@ -16,6 +16,7 @@
 use trackbed_fem::ElementKind;
 
 use super::error::ReadError;
+use super::foreign_elements::FOREIGN;
 use super::mesh_file::{Builder, MeshFile};
 
 #[derive(Clone, Debug, Default)]
@@ -35,17 +36,6 @@ pub(super) struct Grid {
     pub point_data: Vec<Array>,
     pub cell_data: Vec<Array>,
 }
-
-pub(crate) const TYPES: [(u8, ElementKind, &str); 8] = [
-    (25, ElementKind::Hex20, "VTK_QUADRATIC_HEXAHEDRON"),
-    (26, ElementKind::Wedge15, "VTK_QUADRATIC_WEDGE"),
-    (27, ElementKind::Pyramid13, "VTK_QUADRATIC_PYRAMID"),
-    (24, ElementKind::Tet10, "VTK_QUADRATIC_TETRA"),
-    (12, ElementKind::Hex8, "VTK_HEXAHEDRON"),
-    (13, ElementKind::Wedge6, "VTK_WEDGE"),
-    (14, ElementKind::Pyramid5, "VTK_PYRAMID"),
-    (10, ElementKind::Tet4, "VTK_TETRA"),
-];
 
 const LOWER: [u8; 18] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 21, 22, 23, 28, 30, 34, 35, 36];
 const VOXEL: u8 = 11;
@@ -148,8 +138,8 @@ fn elements(builder: &mut Builder, grid: &Grid, node_ids: &[u32]) -> Result<Vec<
                 }
             }
         }
-        let (kind, name) = match TYPES.iter().find(|(n, ..)| *n == number) {
-            Some((_, kind, name)) => (*kind, *name),
+        let (kind, name) = match FOREIGN.iter().find(|row| row.vtk.0 == number) {
+            Some(row) => (row.kind, row.vtk.1),
             None if number == VOXEL && of_cell.len() == 8 => {
                 of_cell.swap(2, 3);
                 of_cell.swap(6, 7);

@@ -11,7 +11,7 @@ use trackbed_fem::ElementKind;
 
 use crate::read::MeshFile;
 use crate::read::abaqus_faces::face_number;
-use crate::read::degenerate::to_brick;
+use crate::read::foreign_elements::foreign;
 
 use super::atomic;
 use super::error::WriteError;
@@ -29,18 +29,6 @@ pub(super) fn write_inp(path: &Path, file: &MeshFile) -> Result<Vec<String>, Wri
     let text = text(file, &mut lost).map_err(|e| WriteError::format(path, e))?;
     atomic::write(path, |out| out.write_all(text.as_bytes()).map_err(WriteError::io(path)))?;
     Ok(lost)
-}
-
-fn type_name(kind: ElementKind) -> &'static str {
-    match kind {
-        ElementKind::Hex20 | ElementKind::Pyramid13 => "C3D20R",
-        ElementKind::Wedge15 => "C3D15",
-        ElementKind::Tet10 => "C3D10",
-        ElementKind::Hex8 => "C3D8",
-        ElementKind::Wedge6 => "C3D6",
-        ElementKind::Pyramid5 => "C3D5",
-        ElementKind::Tet4 => "C3D4",
-    }
 }
 
 fn real(value: f64) -> String {
@@ -62,13 +50,13 @@ fn text(file: &MeshFile, lost: &mut Vec<String>) -> Result<String, std::fmt::Err
     }
     // Consecutive elements of one type share a keyword, to keep the order.
     let elements: Vec<usize> = (0..mesh.element_count()).collect();
-    let name = |e: usize| type_name(mesh.connectivity.kind(e));
+    let name = |e: usize| foreign(mesh.connectivity.kind(e)).abaqus.0;
     for block in elements.chunk_by(|a, b| name(*a) == name(*b)) {
         writeln!(out, "*ELEMENT, TYPE={}", name(block[0]))?;
         for &e in block {
             let kind = mesh.connectivity.kind(e);
             let ids: Vec<u32> = mesh.connectivity[e].iter().map(|n| mesh.node_ids[*n as usize]).collect();
-            let ids = if kind == ElementKind::Pyramid13 { to_brick(kind, &ids) } else { ids };
+            let ids = foreign(kind).abaqus.1.write(kind, &ids);
             let fields: Vec<String> = [mesh.element_ids[e]].iter().chain(&ids).map(u32::to_string).collect();
             let rows: Vec<String> = fields.chunks(ROW).map(|row| row.join(", ")).collect();
             writeln!(out, "{}", rows.join(",\n"))?;

@@ -9,13 +9,16 @@ use std::path::Path;
 use trackbed_fem::ElementKind;
 
 use crate::read::MeshFile;
-use crate::read::degenerate::to_brick;
+use crate::read::foreign_elements::foreign;
 
 use super::atomic;
 use super::error::WriteError;
 use super::mesh_file::{fortran, no_zero, plain_names};
 
 const NAME: usize = 32;
+
+/// Type numbers in the file.
+const TYPES: [(u32, u32); 3] = [(1, 186), (2, 187), (3, 185)];
 
 pub(super) fn write_cdb(path: &Path, file: &MeshFile) -> Result<Vec<String>, WriteError> {
     no_zero(path, file)?;
@@ -37,7 +40,7 @@ fn text(file: &MeshFile, node_sets: &Sets, element_sets: &Sets) -> Result<String
     let w = most.to_string().len().max(8) + 1;
     let mut out = String::new();
     writeln!(out, "/COM,ANSYS archive\n/PREP7")?;
-    for (number, family) in [(1, 186), (2, 187), (3, 185)] {
+    for (number, family) in TYPES {
         if mesh.connectivity.kinds().iter().any(|kind| element_type(*kind) == number) {
             writeln!(out, "ET,{number:9},{family}")?;
         }
@@ -52,7 +55,7 @@ fn text(file: &MeshFile, node_sets: &Sets, element_sets: &Sets) -> Result<String
     for (e, nodes) in mesh.connectivity.iter().enumerate() {
         let (kind, material) = (mesh.connectivity.kind(e), mesh.materials[e]);
         let ids: Vec<u32> = nodes.iter().map(|n| mesh.node_ids[*n as usize]).collect();
-        let ids = if kind == ElementKind::Tet10 { ids } else { to_brick(kind, &ids) };
+        let ids = foreign(kind).ansys.1.write(kind, &ids);
         let entries = [material, element_type(kind), 1, 1, 0, 0, 0, 0, ids.len() as u32, 0];
         for number in entries.iter().chain([&mesh.element_ids[e]]).chain(&ids[..8]) {
             write!(out, "{number:w$}")?;
@@ -87,11 +90,7 @@ fn text(file: &MeshFile, node_sets: &Sets, element_sets: &Sets) -> Result<String
 }
 
 fn element_type(kind: ElementKind) -> u32 {
-    match kind {
-        ElementKind::Hex20 | ElementKind::Wedge15 | ElementKind::Pyramid13 => 1,
-        ElementKind::Tet10 => 2,
-        ElementKind::Hex8 | ElementKind::Wedge6 | ElementKind::Pyramid5 | ElementKind::Tet4 => 3,
-    }
+    TYPES.iter().find(|(_, family)| *family == foreign(kind).ansys.0).map_or(0, |(number, _)| *number)
 }
 
 /// Ascending ids; runs of three or more as first and minus last.

@@ -6,12 +6,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::Path;
 
-use trackbed_fem::ElementKind;
 use trackbed_fem::mesh::Face;
 
 use crate::read::MeshFile;
 use crate::read::faces::key;
-use crate::read::gmsh::{MATERIAL_0, TYPES, order};
+use crate::read::foreign_elements::foreign;
+use crate::read::gmsh::MATERIAL_0;
 
 use super::atomic;
 use super::error::WriteError;
@@ -123,17 +123,11 @@ fn surface_element(file: &MeshFile, face: &Face) -> (i32, String) {
     (number, nodes)
 }
 
-fn number(kind: ElementKind) -> i32 {
-    TYPES.iter().find(|(_, k)| *k == kind).map_or(0, |(number, _)| *number)
-}
-
 fn in_order(file: &MeshFile, element: usize) -> Vec<u32> {
     let mesh = &file.mesh;
-    let mut nodes = vec![0; mesh.connectivity[element].len()];
-    for (place, node) in order(mesh.connectivity.kind(element)).into_iter().zip(&mesh.connectivity[element]) {
-        nodes[place] = mesh.node_ids[*node as usize];
-    }
-    nodes
+    let ids: Vec<u32> = mesh.connectivity[element].iter().map(|n| mesh.node_ids[*n as usize]).collect();
+    let kind = mesh.connectivity.kind(element);
+    foreign(kind).gmsh.1.write(kind, &ids)
 }
 
 /// First id for point elements.
@@ -155,7 +149,7 @@ fn format2(file: &MeshFile, sets: &Sets, groups: &[Group]) -> Result<String, std
     let mut again = String::new();
     for (e, of_element) in groups.iter().enumerate() {
         let nodes = in_order(file, e).iter().map(u32::to_string).collect::<Vec<_>>().join(" ");
-        let kind = number(mesh.connectivity.kind(e));
+        let kind = foreign(mesh.connectivity.kind(e)).gmsh.0;
         let entity = of_element[0];
         writeln!(out, "{} {kind} 2 {entity} {entity} {nodes}", mesh.element_ids[e])?;
         for group in &of_element[1..] {
@@ -222,7 +216,7 @@ fn format4(file: &MeshFile, sets: &Sets, groups: &[Group]) -> Result<String, std
     writeln!(out, "{blocks_in_all} {elements} {first} {last}")?;
     for block in blocks {
         let (volume, kind) = key(block[0]);
-        writeln!(out, "3 {volume} {} {}", number(kind), block.len())?;
+        writeln!(out, "3 {volume} {} {}", foreign(kind).gmsh.0, block.len())?;
         for e in block {
             let nodes: String = in_order(file, *e).iter().map(|n| format!(" {n}")).collect();
             writeln!(out, "{}{nodes}", mesh.element_ids[*e])?;

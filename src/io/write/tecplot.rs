@@ -17,7 +17,10 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use trackbed_fem::ElementKind;
-use trackbed_fem::mesh::{FACE_NODES, HEX20_NODES, Mesh};
+use trackbed_fem::element::hex20;
+use trackbed_fem::mesh::Mesh;
+
+use crate::read::degenerate::to_brick;
 
 use super::atomic;
 use super::error::{WriteError, check_field};
@@ -153,14 +156,15 @@ fn split(frame: &SolidFrame) -> (Vec<[usize; 8]>, Vec<Values>) {
     let mut bricks = Vec::with_capacity(8 * mesh.element_count());
     for (element, &kind) in mesh.connectivity.iter().zip(mesh.connectivity.kinds()) {
         if kind != ElementKind::Hex20 {
-            bricks.push(corners_as_brick(kind).map(|local| element[local] as usize));
+            let brick = to_brick(kind.linear(), &element[..kind.corner_count()]);
+            bricks.push(std::array::from_fn(|c| brick[c] as usize));
             continue;
         }
         let mut points = [0; 27];
-        for local in 0..HEX20_NODES {
+        for local in 0..hex20::NODES {
             points[local] = element[local] as usize;
         }
-        for (side, face) in FACE_NODES.iter().enumerate() {
+        for (side, face) in hex20::FACES.iter().enumerate() {
             let mut key = [0, 1, 2, 3].map(|c| element[face[c]]);
             key.sort_unstable();
             points[20 + side] = *centres.entry(key).or_insert_with(|| {
@@ -176,15 +180,6 @@ fn split(frame: &SolidFrame) -> (Vec<[usize; 8]>, Vec<Values>) {
         bricks.extend(LOWEST.map(|low| BRICK.map(|corner| points[LATTICE[low + corner]])));
     }
     (bricks, extra)
-}
-
-fn corners_as_brick(kind: ElementKind) -> [usize; 8] {
-    match kind.linear() {
-        ElementKind::Wedge6 => [0, 1, 2, 2, 3, 4, 5, 5],
-        ElementKind::Pyramid5 => [0, 1, 2, 3, 4, 4, 4, 4],
-        ElementKind::Tet4 => [0, 1, 2, 2, 3, 3, 3, 3],
-        _ => [0, 1, 2, 3, 4, 5, 6, 7],
-    }
 }
 
 fn combine(frame: &SolidFrame, weights: impl Iterator<Item = (usize, f64)>) -> Values {

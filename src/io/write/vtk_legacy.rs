@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use crate::read::MeshFile;
-use crate::read::vtk_grid::TYPES;
+use crate::read::foreign_elements::foreign;
 
 use super::atomic;
 use super::error::WriteError;
@@ -36,8 +36,7 @@ fn text(file: &MeshFile) -> Result<String, std::fmt::Error> {
     }
     writeln!(out, "CELL_TYPES {cells}")?;
     for kind in mesh.connectivity.kinds() {
-        let number = TYPES.iter().find(|(_, k, _)| k == kind).map_or(0, |t| t.0);
-        writeln!(out, "{number}")?;
+        writeln!(out, "{}", foreign(*kind).vtk.0)?;
     }
     let (mask, values) = constraint_arrays(file);
     writeln!(out, "POINT_DATA {nodes}\nFIELD points {}", 3 + file.node_sets.len())?;

@@ -7,12 +7,13 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
+use crate::read::foreign_elements::foreign;
+
 use super::choice::Choice;
 use super::error::{WriteError, check_field};
 use super::frame::{Frame, GrainFrame, SolidFrame, Values as FieldValues};
 use super::hdf5::{Attribute, File, GroupId, Kind};
 use super::vtk::matrices;
-use super::vtu::cell_type;
 use super::writer::{Format, Mark, Part, Writer};
 
 /// VTKHDF, one file per part.
@@ -248,7 +249,7 @@ impl Series {
                 Some(*end)
             });
             self.whole(ROOT, "Offsets", [0].into_iter().chain(ends))?;
-            let types = kinds.iter().map(|kind| cell_type(*kind)).collect();
+            let types = kinds.iter().map(|kind| foreign(*kind).vtk.0).collect();
             self.add((ROOT, "Types"), (Kind::U8, None), types)?;
             let data = self.file.group(ROOT, "PointData");
             self.field(data, &ids("node_id", &mesh.node_ids))?;

@@ -6,8 +6,7 @@
 use std::path::Path;
 
 use crate::read::MeshFile;
-use crate::read::vtk_grid::TYPES;
-use trackbed_fem::ElementKind;
+use crate::read::foreign_elements::foreign;
 use trackbed_fem::mesh::Mesh;
 
 use super::choice::Choice;
@@ -117,7 +116,7 @@ fn write_grid(
         Some(*end)
     });
     let cells = Section::cells("Cells", nodes.iter().map(|n| u64::from(*n)), ends);
-    let types = kinds.iter().map(|kind| cell_type(*kind)).collect();
+    let types = kinds.iter().map(|kind| foreign(*kind).vtk.0).collect();
     vtk::write(
         file,
         "UnstructuredGrid",
@@ -129,10 +128,6 @@ fn write_grid(
             cells.with(Array::bytes("types", types)),
         ],
     )
-}
-
-pub(super) fn cell_type(kind: ElementKind) -> u8 {
-    TYPES.iter().find(|(_, of, _)| *of == kind).expect("every kind has a VTK type").0
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use crate::scene::solid::{Dilatation, Solid};
 use crate::scene::{SceneError, Table};
 use std::collections::BTreeMap;
+use trackbed_fem::element::Locking;
 use trackbed_fem::{self as fem, AssumedStrain, ElementKind, Material, Mesh, Quadrature};
 
 /// Poisson's ratio of volumetric locking.
@@ -19,7 +20,7 @@ pub fn assumed(solid: &Table<Solid>, mesh: &Mesh) -> Result<AssumedStrain, Scene
         let remedy = "Linear elements always use the mean dilatation";
         return Err(solid.no_effect("dilatation", "quadratic elements").remedy(remedy));
     }
-    let idle = solid.incompatible_modes.is_some() && !kinds.contains(&ElementKind::Hex8);
+    let idle = solid.incompatible_modes.is_some() && !kinds.iter().any(|k| k.properties().incompatible_modes);
     solid.reject_without([("incompatible_modes", idle)], "8-node hexahedra")?;
     Ok(AssumedStrain {
         dilatation: match solid.dilatation.unwrap_or_default() {
@@ -59,14 +60,10 @@ pub fn remarks(
 
 fn remedy(kind: ElementKind, rule: Quadrature, assumed: AssumedStrain) -> Option<&'static str> {
     let mean = assumed.dilatation == fem::Dilatation::Mean;
-    match kind {
-        ElementKind::Hex20 if mean || rule == Quadrature::Gauss2 => None,
-        ElementKind::Hex20 | ElementKind::Wedge15 | ElementKind::Pyramid13 | ElementKind::Tet10 if !mean => {
-            Some("set solid.dilatation = \"mean\"")
-        }
-        ElementKind::Wedge6 | ElementKind::Pyramid5 | ElementKind::Tet4 => {
-            Some("set solid.order = \"quadratic\" and solid.dilatation = \"mean\"")
-        }
+    match kind.properties().locking {
+        Locking::FullRules if rule == Quadrature::Gauss2 => None,
+        Locking::FullRules | Locking::Pointwise if !mean => Some("set solid.dilatation = \"mean\""),
+        Locking::Always => Some("set solid.order = \"quadratic\" and solid.dilatation = \"mean\""),
         _ => None,
     }
 }
