@@ -67,7 +67,7 @@ mod tests {
     use crate::element::hex20;
 
     #[test]
-    fn corners_and_faces_are_those_of_the_hex20() {
+    fn corners_and_faces_agree_with_the_hex20() {
         assert_eq!(NATURAL, hex20::NATURAL[..8]);
         for (face, nodes) in FACES.iter().zip(hex20::FACES) {
             assert_eq!(**face, nodes[..4]);

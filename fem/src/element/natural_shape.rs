@@ -84,8 +84,8 @@ impl NaturalShape {
         }
     }
 
-    /// Weight of point `i` of [`Self::sampling_rule`] at `x`: trilinear (hexahedron), linear (wedge, tetrahedron),
-    /// linear least squares (pyramid).
+    /// Weight of point `i` of [`Self::sampling_rule`] at `x`: trilinear (hexahedron), linear (wedge,
+    /// tetrahedron), linear least squares (pyramid).
     pub fn extrapolation_weight(self, i: usize, x: [f64; 3]) -> f64 {
         let p = self.sampling_rule()[i].0;
         match self {

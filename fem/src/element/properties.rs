@@ -8,7 +8,9 @@ use super::quadrature::VolumePoint;
 pub struct Properties {
     /// Natural shape.
     pub shape: NaturalShape,
-    /// Integration rules of the stiffness, by [`super::quadrature::Quadrature`].
+    /// Integration rules of the stiffness, by [`super::quadrature::Quadrature`]: wedge15, pyramid13 and tet10
+    /// use the fewest points without zero-energy modes, or a rule exact for products of linear strains
+    /// ("full").
     pub stiffness_rules: [&'static [VolumePoint]; 3],
     /// Integration rule of the mass; exact for products of shape functions on flat-faced elements.
     pub mass_rule: &'static [VolumePoint],

@@ -1,8 +1,4 @@
 //! Integration points with precomputed shape functions.
-//!
-//! Wedge15, pyramid13 and tet10 use 9, 18 or 4 points (the fewest without zero-energy modes), or a rule exact
-//! for products of linear strains ("full"). The mass rule is exact for products of shape functions on
-//! flat-faced elements.
 
 use super::ElementKind;
 use super::kind::MAX_NODES;
