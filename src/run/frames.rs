@@ -339,7 +339,7 @@ fn walls(view: GrainsView<'_>, part: &GrainsPart) -> (WallFrame, Vec<u32>) {
     let mut id = 0;
     for (i, plane) in part.walls.planes.iter().enumerate() {
         let point = view.state.plane_point(view.model, i);
-        let (points, polygons) = wall_output::square(&point, &plane.normal.normalize(), extent);
+        let (points, polygons) = dem::wall::square(&point, &plane.normal.normalize(), extent);
         add(id, &points, &polygons.iter().map(Vec::as_slice).collect::<Vec<_>>());
         id += 1;
     }

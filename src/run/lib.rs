@@ -53,7 +53,6 @@ use summary::{RunRecord, Verdict};
 pub use summary::{Summary, peak_memory};
 
 pub use threads::thread_pool;
-pub use wall_output::outline;
 
 pub use trackbed_io::progress::Verbosity;
 

@@ -84,6 +84,15 @@ impl Round {
         matches!(self, Round::Plane { .. })
     }
 
+    /// Corners and edge length [m] in contact with a flat body on it.
+    pub fn flattest(&self) -> [f64; 2] {
+        match self {
+            Round::Disc { radius, .. } => [0.0, std::f64::consts::TAU * radius],
+            Round::Sphere { .. } => [1.0, 0.0],
+            Round::Plane { .. } | Round::Frustum { .. } => [0.0; 2],
+        }
+    }
+
     /// Returns true if rotation about `centre` along `spin` maps the patch to itself.
     pub fn unmoved_by(&self, centre: &Vec3, spin: &Vec3) -> bool {
         let along = |axis: &Vec3| spin.cross(axis).norm() <= 1e-12 * spin.norm();

@@ -5,8 +5,9 @@
 //! bounds).
 
 use super::enclosed::{Enclosed, enclosed};
-use super::input::{Mount, RigidBody, WallShape};
+use super::input::{Mount, RigidBody};
 use super::mount;
+use super::shape::WallShape;
 use super::state::{VertexContact, WallState};
 use crate::base::Vec3;
 use crate::base::balance_terms::{BalanceTerms, Impulse};
@@ -56,34 +57,29 @@ impl Body {
     ) -> Result<Body, ModelError> {
         let error = |problem| ModelError::Wall { wall: name.to_string(), problem };
         let mut bits = input.fixed.iter().enumerate().map(|(k, &f)| u8::from(f) << k).sum::<u8>();
-        let stands = matches!(shape, WallShape::Triangles { .. });
-        let (centre, tensor, vertices) = match shape {
-            WallShape::Triangles { vertices, triangles } => {
-                let (centre, tensor) = of_triangles(input, vertices, triangles).map_err(error)?;
-                let mut used = vec![false; vertices.len()];
-                triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
-                (
-                    centre,
-                    tensor,
-                    vertices.iter().zip(used).filter_map(|(v, used)| used.then_some(*v)).collect(),
-                )
-            }
-            WallShape::Plane { .. } => return Err(error("an infinite plane cannot be a rigid body")),
-            WallShape::Frustum { .. } | WallShape::Sphere { .. } => {
-                let centre = input.centre.unwrap_or_else(|| shape.middle());
-                let tensor = match input.inertia {
-                    Some(given) => of_six(given),
-                    None if input.spin != Vec3::zeros() => {
-                        return Err(error("a round body rotates only if its inertia is given"));
-                    }
-                    // Arbitrary: no rotation.
-                    None => {
-                        bits |= 0b11_1000;
-                        Matrix3::identity() * input.mass
-                    }
-                };
-                (centre, tensor, bounds)
-            }
+        let stands = shape.triangulated().is_some();
+        let (centre, tensor, vertices) = if let Some((vertices, triangles)) = shape.triangulated() {
+            let (centre, tensor) = of_triangles(input, vertices, triangles).map_err(error)?;
+            let mut used = vec![false; vertices.len()];
+            triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+            let vertices = vertices.iter().zip(used).filter_map(|(v, used)| used.then_some(*v));
+            (centre, tensor, vertices.collect())
+        } else if shape.plane().is_some() {
+            return Err(error("an infinite plane cannot be a rigid body"));
+        } else {
+            let centre = input.centre.unwrap_or_else(|| shape.middle());
+            let tensor = match input.inertia {
+                Some(given) => of_six(given),
+                None if input.spin != Vec3::zeros() => {
+                    return Err(error("a round body rotates only if its inertia is given"));
+                }
+                // Arbitrary: no rotation.
+                None => {
+                    bits |= 0b11_1000;
+                    Matrix3::identity() * input.mass
+                }
+            };
+            (centre, tensor, bounds)
         };
         let (inertia, axes) = principal(&tensor);
         let sum = inertia.sum();

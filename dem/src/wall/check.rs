@@ -1,6 +1,6 @@
 //! Validation of walls.
 
-use super::input::{RigidBody, WallInput, WallShape};
+use super::input::{RigidBody, WallInput};
 use crate::base::Vec3;
 use crate::base::error::ModelError;
 
@@ -11,36 +11,12 @@ fn finite(v: &Vec3) -> bool {
 pub(crate) fn walls(input: &[WallInput], materials: usize) -> Result<(), ModelError> {
     for (index, wall) in input.iter().enumerate() {
         in_range("wall", index, "material", wall.material, materials)?;
-        let problem = shape(&wall.shape).or_else(|| motion(wall)).or_else(|| scarring(wall));
+        let problem = wall.shape.fault().or_else(|| motion(wall)).or_else(|| scarring(wall));
         if let Some(problem) = problem {
             return Err(ModelError::Wall { wall: format!("wall {index}"), problem });
         }
     }
     Ok(())
-}
-
-fn shape(shape: &WallShape) -> Option<&'static str> {
-    match shape {
-        WallShape::Triangles { triangles, .. } => triangles.is_empty().then_some("it has no triangles"),
-        WallShape::Plane { point, normal } => (!(finite(point) && finite(normal) && normal.norm() > 0.0))
-            .then_some("its point must be finite and its normal have a length above zero"),
-        WallShape::Frustum { base, axis, height, radii, .. } => {
-            if !(finite(base) && finite(axis) && axis.norm() > 0.0) {
-                Some("its base must be finite and its axis have a length above zero")
-            } else if !(*height >= 0.0
-                && height.is_finite()
-                && radii.iter().all(|r| *r >= 0.0 && r.is_finite()))
-            {
-                Some("its height and radii must be zero or positive, and finite")
-            } else if radii[0].max(radii[1]) == 0.0 || (*height == 0.0 && radii[0] == radii[1]) {
-                Some("it has no area")
-            } else {
-                None
-            }
-        }
-        WallShape::Sphere { centre, radius } => (!(finite(centre) && *radius > 0.0 && radius.is_finite()))
-            .then_some("its radius must be positive"),
-    }
 }
 
 fn motion(wall: &WallInput) -> Option<&'static str> {
@@ -53,7 +29,7 @@ fn motion(wall: &WallInput) -> Option<&'static str> {
     {
         return Some("its oscillation must be finite, with a frequency of zero or more");
     }
-    if let WallShape::Plane { normal, .. } = &wall.shape
+    if let Some((_, normal)) = wall.shape.plane()
         && m.angular_velocity.cross(normal).norm() > 1e-12 * m.angular_velocity.norm() * normal.norm()
     {
         return Some(
@@ -101,7 +77,7 @@ fn motion(wall: &WallInput) -> Option<&'static str> {
 
 fn scarring(wall: &WallInput) -> Option<&'static str> {
     let scarring = wall.scarring.as_ref()?;
-    if !matches!(wall.shape, WallShape::Triangles { .. }) || wall.moves() {
+    if wall.shape.triangulated().is_none() || wall.moves() {
         return Some("a wall with scarring must be of triangles and fixed");
     }
     scarring.fault()

@@ -1,6 +1,7 @@
 //! Wall input.
 
 use super::Servo;
+use super::shape::WallShape;
 use crate::base::Vec3;
 use crate::law::scarring::Scarring;
 
@@ -19,45 +20,6 @@ pub struct WallInput {
     pub body: Option<RigidBody>,
     /// Scarred ground: fixed triangles penetrated by dilated polyhedra and disks.
     pub scarring: Option<Scarring>,
-}
-
-/// Wall shape.
-#[derive(Clone, Debug, PartialEq)]
-pub enum WallShape {
-    /// Two-sided triangles.
-    Triangles {
-        /// Vertices [m].
-        vertices: Vec<Vec3>,
-        /// Vertex indices, any order.
-        triangles: Vec<[u32; 3]>,
-    },
-    /// Infinite plane, grains on its normal's side.
-    Plane {
-        /// Point on it [m].
-        point: Vec3,
-        /// Normal, nonzero.
-        normal: Vec3,
-    },
-    /// Two-sided side of a conical frustum: cylinder for equal radii, ring for zero height.
-    Frustum {
-        /// First end's centre [m].
-        base: Vec3,
-        /// Axis, from first to second end, nonzero.
-        axis: Vec3,
-        /// Height [m].
-        height: f64,
-        /// End radii [m], at most one zero.
-        radii: [f64; 2],
-        /// Whether discs close the ends.
-        caps: [bool; 2],
-    },
-    /// Two-sided sphere.
-    Sphere {
-        /// Centre [m].
-        centre: Vec3,
-        /// Radius [m].
-        radius: f64,
-    },
 }
 
 /// Prescribed motion: steady translation, steady rotation about a co-moving point, oscillation.
@@ -147,31 +109,6 @@ impl WallInput {
     /// Returns the wall, at rest.
     pub fn at_rest(&self) -> WallInput {
         WallInput { scarring: self.scarring, ..WallInput::fixed(self.shape.clone(), self.material) }
-    }
-}
-
-impl WallShape {
-    pub(crate) fn middle(&self) -> Vec3 {
-        match self {
-            WallShape::Frustum { base, axis, height, .. } => base + axis.normalize() * (0.5 * height),
-            _ => self.own_centre(),
-        }
-    }
-
-    /// Returns the default centre of rotation [m].
-    pub fn own_centre(&self) -> Vec3 {
-        match self {
-            WallShape::Triangles { vertices, triangles } => {
-                let mut bounds = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
-                for &v in triangles.iter().flatten() {
-                    bounds = (bounds.0.inf(&vertices[v as usize]), bounds.1.sup(&vertices[v as usize]));
-                }
-                if triangles.is_empty() { Vec3::zeros() } else { (bounds.0 + bounds.1) * 0.5 }
-            }
-            WallShape::Plane { point, .. } => *point,
-            WallShape::Frustum { base, .. } => *base,
-            WallShape::Sphere { centre, .. } => *centre,
-        }
     }
 }
 

@@ -11,9 +11,11 @@ pub mod input;
 mod mount;
 pub mod servo;
 pub(crate) mod set;
+mod shape;
 pub(crate) mod shells;
 pub mod state;
 pub(crate) mod triangulated;
 
-pub use input::{Motion, Mount, Oscillation, RigidBody, TriangleSurface, WallInput, WallShape};
+pub use input::{Motion, Mount, Oscillation, RigidBody, TriangleSurface, WallInput};
 pub use servo::Servo;
+pub use shape::{Outline, PlanCircle, WallShape, square};

@@ -1,7 +1,7 @@
 //! All walls of a model as one surface of numbered patches.
 
 use super::body::Body;
-use super::input::{Motion, WallInput, WallShape};
+use super::input::{Motion, WallInput};
 use super::servo::Servo;
 use super::state::WallState;
 use super::triangulated::{self, SLACK, Triangle};
@@ -80,8 +80,8 @@ impl Walls {
     fn add(&mut self, index: usize, wall: &WallInput) -> Result<(), ModelError> {
         let name = self.name(index);
         let first = self.entries.len();
-        match &wall.shape {
-            WallShape::Triangles { vertices, triangles } => {
+        match wall.shape.triangulated() {
+            Some((vertices, triangles)) => {
                 let mut flats = HashMap::new();
                 for t in triangulated::triangles(vertices, triangles, &name)? {
                     let own = self.entries.len() as u32;
@@ -92,8 +92,8 @@ impl Walls {
                     self.of_triangles.push(index as u32);
                 }
             }
-            shape => {
-                for round in rounds(shape) {
+            None => {
+                for round in wall.shape.rounds() {
                     let (flat, kind) = (self.entries.len() as u32, Kind::Round(self.rounds.len() as u32));
                     self.entries.push(Entry { wall: index as u32, kind, flat });
                     self.rounds.push(round);
@@ -235,13 +235,13 @@ impl Walls {
         let mut out: Vec<Patch> = Vec::with_capacity(self.entries.len());
         for (k, wall) in input.iter().enumerate() {
             let first = out.len() as u32;
-            let forms: Vec<Form> = match &wall.shape {
-                WallShape::Triangles { vertices, triangles } => {
+            let forms: Vec<Form> = match wall.shape.triangulated() {
+                Some((vertices, triangles)) => {
                     let same = triangulated::welded(vertices);
                     let facets = facet::facets(vertices, triangles, &same);
                     facets.into_iter().map(|f| Form::Facet(Box::new(f))).collect()
                 }
-                shape => rounds(shape).into_iter().map(Form::Round).collect(),
+                None => wall.shape.rounds().into_iter().map(Form::Round).collect(),
             };
             let named = forms.into_iter().zip(first..);
             out.extend(named.map(|(form, patch)| Patch::new(k as u32, form, self.partner(patch))));
@@ -275,28 +275,6 @@ impl Walls {
 
     pub(crate) fn placed<'a>(&'a self, states: &'a [WallState]) -> PlacedWalls<'a> {
         PlacedWalls { walls: self, states }
-    }
-}
-
-pub(super) fn rounds(shape: &WallShape) -> Vec<Round> {
-    match shape {
-        WallShape::Triangles { .. } => Vec::new(),
-        WallShape::Plane { point, normal } => {
-            vec![Round::Plane { point: *point, normal: normal.normalize() }]
-        }
-        WallShape::Frustum { base, axis, height, radii, caps } => {
-            let axis = axis.normalize();
-            let side = |far| Round::Frustum { base: *base, axis, height: *height, radii: *radii, far };
-            let mut out = vec![side(false), side(true)];
-            for (k, end) in [*base, base + axis * *height].into_iter().enumerate() {
-                if caps[k] && radii[k] > 0.0 {
-                    let axis = if k == 0 { -axis } else { axis };
-                    out.push(Round::Disc { centre: end, axis, radius: radii[k] });
-                }
-            }
-            out
-        }
-        WallShape::Sphere { centre, radius } => vec![Round::Sphere { centre: *centre, radius: *radius }],
     }
 }
 

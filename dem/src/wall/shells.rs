@@ -3,8 +3,8 @@
 //! Not supported: two round bodies, immovable pairs, scarred ground.
 
 use super::enclosed::enclosed;
-use super::input::{WallInput, WallShape};
-use super::set::{Walls, rounds};
+use super::input::WallInput;
+use super::set::Walls;
 use super::triangulated::welded;
 use crate::base::Vec3;
 use crate::base::error::ModelError;
@@ -38,7 +38,7 @@ impl Shells {
     /// Rounding radius that does not fit.
     pub fn new(input: &[WallInput], walls: &Walls) -> Result<Shells, ModelError> {
         let free = |k: usize| walls.walls[k].body.as_ref().is_some_and(|b| b.inverse_mass > 0.0);
-        let shell = |k: usize| matches!(input[k].shape, WallShape::Triangles { .. });
+        let shell = |k: usize| input[k].shape.triangulated().is_some();
         let presses = |k: usize| shell(k) && input[k].body.is_some();
         let mut pairs = Vec::new();
         for a in (0..input.len()).filter(|a| presses(*a)) {
@@ -50,9 +50,9 @@ impl Shells {
         }
         let mut touched = vec![false; input.len()];
         pairs.iter().flatten().for_each(|k| touched[*k as usize] = true);
-        let form = |k: usize| match &input[k].shape {
+        let form = |k: usize| match input[k].shape.triangulated() {
             _ if !touched[k] => Ok(Form::Untouched),
-            WallShape::Triangles { vertices, triangles } => {
+            Some((vertices, triangles)) => {
                 let shell = match &input[k].body {
                     None => Shell::sharp(vertices, triangles, &welded(vertices)),
                     Some(body) => rounded(vertices, triangles, body.rounding)
@@ -60,7 +60,7 @@ impl Shells {
                 };
                 Ok(Form::Shell(Box::new(shell)))
             }
-            shape => Ok(Form::Rounds(rounds(shape))),
+            None => Ok(Form::Rounds(input[k].shape.rounds())),
         };
         let forms = if pairs.is_empty() {
             Vec::new()
@@ -84,11 +84,7 @@ impl Shells {
             Some(Form::Shell(shell)) if shell.radius > 0.0 => shell.flattest(reach),
             Some(Form::Shell(_)) => own,
             Some(Form::Rounds(rounds)) => {
-                rounds.iter().fold([0.0_f64; 2], |[points, length], round| match round {
-                    Round::Disc { radius, .. } => [points, length.max(std::f64::consts::TAU * radius)],
-                    Round::Sphere { .. } => [points + 1.0, length],
-                    _ => [points, length],
-                })
+                rounds.iter().map(Round::flattest).fold([0.0_f64; 2], |a, b| [a[0] + b[0], a[1].max(b[1])])
             }
             _ => [0.0; 2],
         };

@@ -6,7 +6,7 @@ use crate::model::Job;
 use crate::model::grains::{inside_of, is_plain};
 use crate::scene::Scene;
 use crate::scene::walls::{Wall, WallKind};
-use trackbed_dem::{Vec3, WallShape};
+use trackbed_dem::Vec3;
 
 /// Tolerated fraction of misplaced grains.
 const SHARE: f64 = 0.2;
@@ -157,8 +157,7 @@ fn beside_containers(findings: &mut Findings, scene: &Scene, job: &Job) {
     let present = || part.groups.bodies.iter().filter(|b| !b.absent).map(place);
     let solid = scene.walls.iter().enumerate().filter(|(_, wall)| !is_plain(wall));
     for ((k, _), wall) in solid.zip(&part.walls.others) {
-        let open = matches!(wall.shape, WallShape::Frustum { caps, .. } if caps != [true, true]);
-        let Some(side) = inside_of(&wall.shape).filter(|_| !open) else { continue };
+        let Some(side) = inside_of(&wall.shape).filter(|_| !wall.shape.open_end()) else { continue };
         let inside = |x: &[f64; 3]| side(&Vec3::from(*x)) == Some(true);
         let (all, held) = (present().count(), present().filter(inside).count());
         if held > 0 && held < all {

@@ -5,7 +5,6 @@ use super::item::{Item, Shape, across};
 use trackbed_dem::{Vec3, WallShape};
 use trackbed_input::model::grains::{GroupsPart, is_plain};
 use trackbed_input::scene::walls::Wall;
-use trackbed_run::outline;
 
 /// Margin of planes over the model.
 const MARGIN: f64 = 0.03;
@@ -37,10 +36,10 @@ pub fn rectangle(point: &Vec3, normal: &Vec3, bounds: Bounds) -> Shape {
 
 /// Surface of any wall.
 pub fn round(wall: &WallShape, bounds: Bounds) -> Shape {
-    if let WallShape::Plane { point, normal } = wall {
+    if let Some((point, normal)) = wall.plane() {
         return rectangle(point, normal, bounds);
     }
-    let (points, polygons) = outline(wall, |x| x, (Vec3::zeros(), 1.0));
+    let (points, polygons) = wall.outline(|x| x, (Vec3::zeros(), 1.0));
     let mut shape = Shape::default();
     shape.polygons(points.into_iter().map(Into::into), polygons.iter().map(Vec::as_slice));
     shape

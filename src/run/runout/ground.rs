@@ -1,7 +1,7 @@
 //! Ground height from fixed planes and triangles.
 
 use crate::system::GrainsView;
-use trackbed_dem::{Motion, Vec3, WallInput, WallShape};
+use trackbed_dem::{Motion, Vec3, WallInput};
 use trackbed_input::model::grains::GrainsPart;
 
 /// Smallest vertical component of a ground normal.
@@ -55,10 +55,8 @@ pub fn under(view: GrainsView<'_>, part: &GrainsPart, plan: &Plan, places: &[[f6
     let mut raise = |k: usize, z: f64| ground[k] = Some(ground[k].map_or(z, |g: f64| g.max(z)));
     let planes = part.walls.planes.iter().enumerate();
     let planes = planes.map(|(k, p)| (view.state.plane_point(view.model, k), p.normal));
-    let others = part.walls.others.iter().filter(|w| stands(w)).filter_map(|wall| match &wall.shape {
-        WallShape::Plane { point, normal } => Some((*point, *normal)),
-        _ => None,
-    });
+    let standing = || part.walls.others.iter().filter(|w| stands(w)).map(|w| &w.shape);
+    let others = standing().filter_map(|shape| shape.plane()).map(|(point, normal)| (*point, *normal));
     for (point, normal) in planes.chain(others) {
         let n = normal.normalize();
         if n.z >= UPRIGHT {
@@ -71,11 +69,9 @@ pub fn under(view: GrainsView<'_>, part: &GrainsPart, plan: &Plan, places: &[[f6
     for (k, [x, y]) in places.iter().enumerate() {
         of_cell[plan.index(plan.along(0, *x), plan.along(1, *y))].push(k as u32);
     }
-    for wall in part.walls.others.iter().filter(|w| stands(w)) {
-        if let WallShape::Triangles { vertices, triangles } = &wall.shape {
-            for t in triangles {
-                below(plan, t.map(|v| vertices[v as usize]), places, &of_cell, &mut raise);
-            }
+    for (vertices, triangles) in standing().filter_map(|shape| shape.triangulated()) {
+        for t in triangles {
+            below(plan, t.map(|v| vertices[v as usize]), places, &of_cell, &mut raise);
         }
     }
     ground

@@ -2,7 +2,7 @@
 
 use super::{Check, Limits};
 use trackbed_dem::measure::BoxRegion;
-use trackbed_dem::{Vec3, WallInput, WallShape};
+use trackbed_dem::{Vec3, WallInput};
 use trackbed_input::model::grains::GrainsPart;
 use trackbed_track::GrainsView;
 
@@ -128,23 +128,13 @@ fn walls(view: GrainsView<'_>, grains: &GrainsPart) -> Vec<(usize, f64)> {
     let stays = |wall: &&WallInput| !packing || (wall.servo.is_none() && wall.body.is_none());
     for (w, wall) in grains.walls.others.iter().filter(stays).enumerate() {
         let at = |x: &Vec3| state.wall_point(model, w, x);
-        let points: Vec<Vec3> = match &wall.shape {
-            WallShape::Plane { point, normal } => {
-                found.extend(across(normal).map(|d| (d, at(point)[d])));
-                continue;
-            }
-            WallShape::Triangles { vertices, .. } => vertices.iter().map(at).collect(),
-            WallShape::Frustum { base, axis, height, radii, .. } => {
-                let end = base + axis.normalize() * *height;
-                [(*base, radii[0]), (end, radii[1])]
-                    .iter()
-                    .flat_map(|(x, r)| [at(x).add_scalar(*r), at(x).add_scalar(-r)])
-                    .collect()
-            }
-            WallShape::Sphere { centre, radius } => {
-                vec![at(centre).add_scalar(*radius), at(centre).add_scalar(-radius)]
-            }
-        };
+        if let Some((point, normal)) = wall.shape.plane() {
+            found.extend(across(normal).map(|d| (d, at(point)[d])));
+            continue;
+        }
+        let balls = wall.shape.balls();
+        let points: Vec<Vec3> =
+            balls.iter().flat_map(|(x, r)| [at(x).add_scalar(*r), at(x).add_scalar(-r)]).collect();
         let ends = |d: usize| {
             let all = points.iter().map(move |x| x[d]);
             [all.clone().fold(f64::INFINITY, f64::min), all.fold(f64::NEG_INFINITY, f64::max)]

@@ -2,7 +2,7 @@
 
 use super::{Check, Limits};
 use trackbed_dem::measure::{Fragments, fragments};
-use trackbed_dem::{State, Vec3, WallShape};
+use trackbed_dem::{State, Vec3};
 use trackbed_input::model::grains::GrainsPart;
 use trackbed_track::GrainsView;
 
@@ -21,19 +21,11 @@ pub fn grains_below_walls(view: GrainsView<'_>, grains: &GrainsPart) -> Option<C
     }
     let mut lowest = f64::INFINITY;
     for (w, wall) in walls.others.iter().enumerate() {
-        let height = |x: &Vec3| state.wall_point(model, w, x).dot(&up);
-        let low = match &wall.shape {
-            WallShape::Plane { normal, .. } if is_floor(normal) => return None,
-            WallShape::Plane { .. } => f64::INFINITY,
-            WallShape::Triangles { vertices, .. } => {
-                vertices.iter().map(height).fold(f64::INFINITY, f64::min)
-            }
-            WallShape::Frustum { base, axis, height: length, radii, .. } => {
-                let ends = [(*base, radii[0]), (base + axis.normalize() * *length, radii[1])];
-                ends.iter().map(|(x, r)| height(x) - r).fold(f64::INFINITY, f64::min)
-            }
-            WallShape::Sphere { centre, radius } => height(centre) - radius,
-        };
+        if wall.shape.plane().is_some_and(|(_, normal)| is_floor(normal)) {
+            return None;
+        }
+        let bottom = |(x, r): &(Vec3, f64)| state.wall_point(model, w, x).dot(&up) - r;
+        let low = wall.shape.balls().iter().map(bottom).fold(f64::INFINITY, f64::min);
         lowest = lowest.min(low);
     }
     // Fixed grains support others.

@@ -1,5 +1,6 @@
 //! Plans of sleepers and plates against walls.
 
+use trackbed_dem::wall::PlanCircle;
 use trackbed_dem::{Vec3, WallShape};
 
 /// Depth behind a wall that counts [m].
@@ -33,27 +34,15 @@ impl Footprint {
 
     /// Whether a wall that is no plane cuts the rectangle.
     pub fn is_cut_by(&self, shape: &WallShape) -> bool {
-        match shape {
-            WallShape::Plane { .. } => false,
-            WallShape::Sphere { centre, radius } => {
-                centre.z + radius > self.bottom && self.is_cut([centre.x, centre.y], [*radius; 2])
-            }
-            WallShape::Frustum { base, axis, height, radii, .. } => {
-                let axis = axis.normalize();
-                let top = base.z.max(base.z + axis.z * height);
-                let mean = 0.5 * (radii[0] + radii[1]);
-                let upright = axis.z.abs() > 1.0 - 1e-6 && *height > 0.0 && top > self.bottom;
-                upright && self.is_cut([base.x, base.y], [radii[0].max(radii[1]), mean])
-            }
-            WallShape::Triangles { vertices, triangles } => {
-                triangles.iter().any(|t| self.is_cut_by_triangle(&t.map(|v| vertices[v as usize])))
-            }
+        if let Some((vertices, triangles)) = shape.triangulated() {
+            return triangles.iter().any(|t| self.is_cut_by_triangle(&t.map(|v| vertices[v as usize])));
         }
+        shape.plan_circle().is_some_and(|circle| circle.top > self.bottom && self.is_cut(&circle))
     }
 
-    /// Circles of the largest and the mean radius [m].
-    fn is_cut(&self, middle: [f64; 2], [largest, mean]: [f64; 2]) -> bool {
-        let away = [0, 1].map(|d| (self.centre[d] - middle[d]).abs());
+    fn is_cut(&self, circle: &PlanCircle) -> bool {
+        let [largest, mean] = circle.radii;
+        let away = [0, 1].map(|d| (self.centre[d] - circle.centre[d]).abs());
         let corner = libm::hypot(away[0] + self.half[0], away[1] + self.half[1]);
         let nearest = [0, 1].map(|d| (away[d] - self.half[d]).max(0.0));
         corner > largest + BEHIND && libm::hypot(nearest[0], nearest[1]) < mean - BEHIND

@@ -50,9 +50,9 @@ fn crossed(grains: &GrainsPart, container: &Container, limit: f64) -> Option<Str
         if later && (wall.servo.is_some() || wall.body.is_some()) {
             continue;
         }
-        let found = match &wall.shape {
-            WallShape::Plane { point, normal } => behind(point, normal),
-            shape => straddles(shape, &points, limit).then(|| "a region across".into()),
+        let found = match wall.shape.plane() {
+            Some((point, normal)) => behind(point, normal),
+            None => straddles(&wall.shape, &points, limit).then(|| "a region across".into()),
         };
         if let Some(found) = found {
             return Some(format!("{found} wall \"{name}\""));
@@ -101,30 +101,11 @@ type Side<'a> = Box<dyn Fn(&Vec3) -> Option<bool> + 'a>;
 
 /// Returns a function that decides if a point is inside a wall. None for planes and open surfaces.
 pub fn inside_of(shape: &WallShape) -> Option<Side<'_>> {
-    match shape {
-        WallShape::Plane { .. } => None,
-        WallShape::Sphere { centre, radius } => {
-            Some(Box::new(move |x: &Vec3| Some((x - centre).norm() < *radius)))
-        }
-        WallShape::Frustum { base, axis, height, radii, caps } => {
-            let axis = axis.normalize();
-            let closed = *caps == [true, true];
-            if *height <= 0.0 {
-                return None;
-            }
-            Some(Box::new(move |x: &Vec3| {
-                let along = (x - base).dot(&axis);
-                let between = (0.0..=*height).contains(&along);
-                let radius = radii[0] + (radii[1] - radii[0]) * along / height;
-                let within = (x - base - axis * along).norm() < radius;
-                (closed || between).then_some(between && within)
-            }))
-        }
-        WallShape::Triangles { vertices, triangles } => {
-            let surface = ClosedSurface::new(vertices, triangles).ok()?;
-            Some(Box::new(move |x: &Vec3| Some(surface.contains(x))))
-        }
+    if let Some((vertices, triangles)) = shape.triangulated() {
+        let surface = ClosedSurface::new(vertices, triangles).ok()?;
+        return Some(Box::new(move |x: &Vec3| Some(surface.contains(x))));
     }
+    shape.encloses().then(|| Box::new(move |x: &Vec3| shape.contains(x)) as Side<'_>)
 }
 
 #[cfg(test)]

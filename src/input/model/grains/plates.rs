@@ -5,7 +5,7 @@ use super::footprint::Footprint;
 use super::part::GrainsPart;
 use super::refused::refused;
 use crate::scene::{Document, SceneError};
-use trackbed_dem::{BodyInput, Model, ModelError, ModelInput, Vec3, WallShape};
+use trackbed_dem::{BodyInput, Model, ModelError, ModelInput, Vec3};
 
 /// Rejects plates that reach through walls, and plates without stiffness against a wall or the grains.
 ///
@@ -34,13 +34,13 @@ fn through(grains: &GrainsPart, plate: &Footprint) -> Option<String> {
         Some(format!("{depth:.3e} m through {}", grains.names().plane(k)))
     });
     let walls = grains.walls.others.iter().zip(&grains.walls.names);
-    let mut walls =
-        walls.filter(|(w, _)| w.servo.is_none() && w.body.is_none()).filter_map(|(w, name)| match &w.shape {
-            WallShape::Plane { point, normal } => {
-                plate.behind(point, normal).map(|depth| format!("{depth:.3e} m through wall \"{name}\""))
-            }
-            shape => plate.is_cut_by(shape).then(|| format!("through wall \"{name}\"")),
-        });
+    let mut walls = walls.filter(|(w, _)| w.servo.is_none() && w.body.is_none()).filter_map(|(w, name)| {
+        let found = match w.shape.plane() {
+            Some((point, normal)) => format!("{:.3e} m ", plate.behind(point, normal)?),
+            None => plate.is_cut_by(&w.shape).then(String::new)?,
+        };
+        Some(format!("{found}through wall \"{name}\""))
+    });
     planes.next().or_else(|| walls.next())
 }
 

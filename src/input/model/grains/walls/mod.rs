@@ -6,11 +6,11 @@ mod shape;
 
 use super::check::find;
 use crate::scene::walls::{Wall, WallKind};
-use crate::scene::{Scene, Table, kinds};
+use crate::scene::{Scene, Table};
 use motion::{body, motion, servo};
 use scarring::scarring;
 use shape::shape;
-use trackbed_dem::{Plane, WallInput, WallShape};
+use trackbed_dem::{Plane, WallInput};
 use trackbed_io::failure::Failure;
 
 /// The walls of a scene.
@@ -37,22 +37,6 @@ pub struct Recorded {
     pub wall: usize,
 }
 
-const SPECIAL: [(&str, &[WallKind]); 13] = [
-    ("point", &[WallKind::Plane]),
-    ("normal", &[WallKind::Plane]),
-    ("vertices", &[WallKind::Triangles]),
-    ("triangles", &[WallKind::Triangles]),
-    ("file", &[WallKind::Mesh]),
-    ("scale", &[WallKind::Mesh]),
-    ("translation", &[WallKind::Mesh]),
-    ("base", &[WallKind::Cylinder, WallKind::Cone, WallKind::Sphere]),
-    ("axis", &[WallKind::Cylinder, WallKind::Cone]),
-    ("height", &[WallKind::Cylinder, WallKind::Cone]),
-    ("radius", &[WallKind::Cylinder, WallKind::Sphere]),
-    ("radii", &[WallKind::Cone]),
-    ("caps", &[WallKind::Cylinder, WallKind::Cone]),
-];
-
 pub(super) fn build(scene: &Table<Scene>) -> Result<WallsPart, Failure> {
     let mut part = WallsPart::default();
     for (i, wall) in scene.rows("walls", &scene.walls).enumerate() {
@@ -60,7 +44,7 @@ pub(super) fn build(scene: &Table<Scene>) -> Result<WallsPart, Failure> {
         let before = part.others.len();
         add(&wall, i, material, &mut part)?;
         let new = part.others.get(before).map(|w| &w.shape);
-        if scene.track.is_some() && matches!(new, Some(WallShape::Plane { .. })) {
+        if scene.track.is_some() && new.is_some_and(|shape| shape.plane().is_some()) {
             let expected = "a plane with no key but `velocity`: sleepers contact only such planes";
             return Err(wall.here("a plane with other keys", expected).into());
         }
@@ -81,31 +65,13 @@ pub fn is_plain(wall: &Wall) -> bool {
 }
 
 fn add(wall: &Table<Wall>, index: usize, material: usize, part: &mut WallsPart) -> Result<(), Failure> {
-    let present = |k: &str| match k {
-        "point" => wall.point.is_some(),
-        "normal" => wall.normal.is_some(),
-        "vertices" => wall.vertices.is_some(),
-        "triangles" => wall.triangles.is_some(),
-        "file" => wall.file.is_some(),
-        "scale" => wall.scale.is_some(),
-        "translation" => wall.translation.is_some(),
-        "base" => wall.base.is_some(),
-        "axis" => wall.axis.is_some(),
-        "height" => wall.height.is_some(),
-        "radius" => wall.radius.is_some(),
-        "radii" => wall.radii.is_some(),
-        _ => wall.caps.is_some(),
-    };
-    if let Some((k, of)) = SPECIAL.iter().find(|(k, of)| present(k) && !of.contains(&wall.kind)) {
-        return Err(wall.no_effect(k, kinds(of)).into());
-    }
     let shape = shape(wall)?;
     let motion = motion(wall)?;
     let name = wall.name.clone().unwrap_or_else(|| format!("wall{index}"));
     if wall.record && part.recorded.iter().any(|r| r.name == name) {
         return Err(wall.error("name", format!("\"{name}\""), "a unique name").into());
     }
-    if let (WallShape::Plane { point, normal }, true) = (&shape, is_plain(wall)) {
+    if let (Some((point, normal)), true) = (shape.plane(), is_plain(wall)) {
         part.plane_names.push(name);
         part.planes.push(Plane { point: *point, normal: *normal, material, velocity: motion.velocity });
         return Ok(());

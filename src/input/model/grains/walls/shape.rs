@@ -2,12 +2,37 @@
 
 use crate::scene::units::vector;
 use crate::scene::walls::{Wall, WallKind};
-use crate::scene::{SceneError, Table};
+use crate::scene::{SceneError, Table, kinds};
 use trackbed_dem::{Vec3, WallShape};
 use trackbed_io::failure::Failure;
 use trackbed_io::read::{read_surface, surface_unit};
 
+/// Rejects keys of other kinds.
+fn own_keys(wall: &Table<Wall>) -> Result<(), SceneError> {
+    use WallKind::{Cone, Cylinder, Mesh, Plane, Sphere, Triangles};
+    let keys: [(&str, bool, &[WallKind]); 13] = [
+        ("point", wall.point.is_some(), &[Plane]),
+        ("normal", wall.normal.is_some(), &[Plane]),
+        ("vertices", wall.vertices.is_some(), &[Triangles]),
+        ("triangles", wall.triangles.is_some(), &[Triangles]),
+        ("file", wall.file.is_some(), &[Mesh]),
+        ("scale", wall.scale.is_some(), &[Mesh]),
+        ("translation", wall.translation.is_some(), &[Mesh]),
+        ("base", wall.base.is_some(), &[Cylinder, Cone, Sphere]),
+        ("axis", wall.axis.is_some(), &[Cylinder, Cone]),
+        ("height", wall.height.is_some(), &[Cylinder, Cone]),
+        ("radius", wall.radius.is_some(), &[Cylinder, Sphere]),
+        ("radii", wall.radii.is_some(), &[Cone]),
+        ("caps", wall.caps.is_some(), &[Cylinder, Cone]),
+    ];
+    match keys.iter().find(|(_, present, of)| *present && !of.contains(&wall.kind)) {
+        Some((key, _, of)) => Err(wall.no_effect(key, kinds(of))),
+        None => Ok(()),
+    }
+}
+
 pub(super) fn shape(wall: &Table<Wall>) -> Result<WallShape, Failure> {
+    own_keys(wall)?;
     let axis =
         || -> Result<Vec3, SceneError> { direction(wall, "axis", wall.axis.unwrap_or([0.0, 0.0, 1.0])) };
     let base = || {
