@@ -345,32 +345,23 @@ fn walls(view: GrainsView<'_>, part: &GrainsPart) -> (WallFrame, Vec<u32>) {
     }
     id = wall_output::polygons(view, part, extent, id, &mut frame);
     for body in 0..view.model.body_count() {
-        if let Shape::Box { half } = view.model.shape(body) {
+        let shape = view.model.shape(body);
+        let Some((points, polygons)) = shape.query(|s| s.outline()) else { continue };
+        if view.state.present(body) {
             let (x, q) = (view.state.position(body), view.state.orientation(view.model, body));
-            let corners: Vec<dem::Vec3> = (0..8)
-                .map(|c| {
-                    let sign = |bit: usize| if c >> bit & 1 == 1 { 1.0 } else { -1.0 };
-                    x + q * dem::Vec3::new(sign(0) * half[0], sign(1) * half[1], sign(2) * half[2])
-                })
-                .collect();
-            let sides: [&[u32]; 6] =
-                [&[0, 2, 3, 1], &[4, 5, 7, 6], &[0, 1, 5, 4], &[2, 6, 7, 3], &[0, 4, 6, 2], &[1, 3, 7, 5]];
-            push(&mut frame, (id, WallKind::Box), &corners, &sides);
-            id += 1;
-        }
-        if let Shape::Polyhedron(it) = view.model.shape(body) {
-            if view.state.present(body) {
-                let (x, q) = (view.state.position(body), view.state.orientation(view.model, body));
-                let (scale, (points, polygons)) = (view.model.scale(body), it.outline());
-                let points: Vec<dem::Vec3> = points.iter().map(|p| x + q * (p * scale)).collect();
-                let polygons: Vec<&[u32]> = polygons.iter().map(Vec::as_slice).collect();
+            let scale = view.model.scale(body);
+            let points: Vec<dem::Vec3> = points.iter().map(|p| x + q * (p * scale)).collect();
+            let polygons: Vec<&[u32]> = polygons.iter().map(Vec::as_slice).collect();
+            if matches!(shape, Shape::Box { .. }) {
+                push(&mut frame, (id, WallKind::Box), &points, &polygons);
+            } else {
                 of.resize(frame.polygons.len(), NO_BODY);
                 push(&mut frame, (id, WallKind::Stone), &points, &polygons);
                 of.resize(frame.polygons.len(), body as u32);
             }
-            // Ids are stable under insertion and removal.
-            id += 1;
         }
+        // Ids are stable under insertion and removal.
+        id += 1;
     }
     (frame, of)
 }

@@ -2,6 +2,7 @@
 
 mod union;
 
+use super::body_shape::{BodyShape, positive};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use union::{Ball, union_moments};
@@ -97,9 +98,82 @@ impl Clump {
         std::array::from_fn(|k| hi[k] - lo[k])
     }
 
+    fn largest(&self) -> f64 {
+        self.spheres.iter().map(|s| s.1).fold(0.0, f64::max)
+    }
+
     /// Bounding radius about the centroid [m].
     pub fn bounding_radius(&self) -> f64 {
         self.spheres.iter().map(|(c, r)| Vector3::from(*c).norm() + r).fold(0.0, f64::max)
+    }
+}
+
+impl BodyShape for Clump {
+    fn fault(&self) -> Option<String> {
+        let good = |(x, r): &([f64; 3], f64)| positive(*r) && x.iter().all(|x| x.is_finite());
+        Some(match self.spheres.len() {
+            0 => "a clump without spheres".to_string(),
+            count @ 65_536.. => format!("a clump of {count} spheres; at most 65535"),
+            _ if !positive(self.volume) || !self.inertia.iter().all(|&i| positive(i)) => {
+                "volume and inertia of a clump must be positive".to_string()
+            }
+            _ if !self.spheres.iter().all(good) => {
+                "a sphere of the clump has no positive radius or no finite centre".to_string()
+            }
+            _ => return None,
+        })
+    }
+
+    fn volume(&self) -> f64 {
+        self.volume
+    }
+
+    fn gyration2(&self) -> Vector3<f64> {
+        Vector3::from(self.inertia) / self.volume
+    }
+
+    fn bounding_radius(&self) -> f64 {
+        self.bounding_radius()
+    }
+
+    fn reference_radius(&self) -> f64 {
+        self.spheres.iter().map(|s| s.1).fold(f64::INFINITY, f64::min)
+    }
+
+    fn contact_radius(&self) -> Option<f64> {
+        Some(self.largest())
+    }
+
+    fn levers2(&self) -> [f64; 3] {
+        let reach2 = |k: usize| {
+            let lever = |(c, r): &([f64; 3], f64)| libm::hypot(c[(k + 1) % 3], c[(k + 2) % 3]) + r;
+            self.spheres.iter().map(|s| lever(s).powi(2)).fold(0.0, f64::max)
+        };
+        [0, 1, 2].map(reach2)
+    }
+
+    /// Members touching a plane across a principal axis (within 0.1 of the largest radius).
+    fn contacts(&self, _: f64, _: f64, _: bool) -> f64 {
+        let slack = 0.1 * self.largest();
+        let touching = |axis: usize, sign: f64| {
+            let reach = |s: &([f64; 3], f64)| sign * s.0[axis] + s.1;
+            let furthest = self.spheres.iter().map(reach).fold(f64::NEG_INFINITY, f64::max);
+            self.spheres.iter().filter(|s| reach(s) >= furthest - slack).count()
+        };
+        let flat = (0..3).map(|axis| touching(axis, 1.0).max(touching(axis, -1.0))).max().unwrap_or(0);
+        2.0 * flat.max(12) as f64
+    }
+
+    fn sphere_count(&self) -> usize {
+        self.spheres.len()
+    }
+
+    fn for_spheres(&self, act: &mut dyn FnMut(Vector3<f64>, f64)) {
+        self.spheres.iter().for_each(|(c, r)| act(Vector3::from(*c), *r));
+    }
+
+    fn sieve_size(&self) -> Option<f64> {
+        Some(self.sieve_size())
     }
 }
 

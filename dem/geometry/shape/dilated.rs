@@ -1,5 +1,6 @@
 //! Dilated polyhedron: convex core dilated by a sphere. The core of a disk is a flat disk (`disk.rs`).
 
+mod body_shape;
 #[doc(hidden)]
 pub mod circle;
 pub mod disk;

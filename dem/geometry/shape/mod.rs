@@ -1,16 +1,21 @@
 //! Body shapes.
 
+pub mod body_shape;
 pub mod clump;
 pub mod cluster;
 pub mod cuboid;
 pub mod dilated;
 pub mod plane;
 pub mod polyhedron;
+pub mod sphere;
 pub mod triangle;
 
 use crate::base::Vec3;
+use body_shape::BodyShape;
 use clump::Clump;
+use cuboid::Cuboid;
 use dilated::{Core, Dilated};
+use sphere::Sphere;
 
 /// Body shape in the body frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +38,16 @@ pub enum Shape {
 }
 
 impl Shape {
+    /// Queries the shape: the only match over all kinds.
+    pub fn query<T>(&self, query: impl FnOnce(&dyn BodyShape) -> T) -> T {
+        match self {
+            Shape::Sphere { radius } => query(&Sphere { radius: *radius }),
+            Shape::Clump(clump) => query(clump),
+            Shape::Box { half } => query(&Cuboid { half: *half }),
+            Shape::Polyhedron(it) => query(&**it),
+        }
+    }
+
     /// Half lengths of the bounding box about the centre of mass, for shapes not made of spheres [m].
     pub fn bounding_half(&self, scale: f64) -> Vec3 {
         match self {
@@ -54,22 +69,19 @@ impl Shape {
     /// Empty for shapes without faces.
     pub fn core(&self) -> Core {
         match self {
-            Shape::Sphere { .. } | Shape::Clump(_) => Core::default(),
             Shape::Polyhedron(it) => it.core.clone(),
             Shape::Box { half } => {
                 let corners: Vec<Vec3> = (0..8).map(|k| cuboid::corner(&Vec3::from(*half), k)).collect();
                 // A degenerate box needs no core.
                 Core::new(&corners).unwrap_or_default()
             }
+            _ => Core::default(),
         }
     }
 
     /// Corners in direct contact with planes.
     pub fn corners(&self) -> u32 {
-        match self {
-            Shape::Sphere { .. } | Shape::Clump(_) | Shape::Polyhedron(_) => 0,
-            Shape::Box { .. } => 8,
-        }
+        if let Shape::Box { .. } = self { 8 } else { 0 }
     }
 
     /// Corner in the body frame and body size used as contact radius [m].

@@ -4,7 +4,7 @@ use super::input::BodyInput;
 use crate::base::Vec3;
 use crate::base::error::ModelError;
 use crate::law::material::Material;
-use crate::shape::{Shape, cuboid};
+use crate::shape::Shape;
 use nalgebra::UnitQuaternion;
 use std::collections::HashMap;
 
@@ -166,21 +166,10 @@ impl Bodies {
 }
 
 fn class(b: &BodyInput, shape: &Shape, density: f64, fixed: u8) -> Class {
-    let volume = volume(shape, 1.0);
-    let mut radius = 0.0_f64;
-    for_members(shape, 1.0, |c, r| radius = radius.max(c.norm() + r));
-    let (kind, gyration2) = match shape {
-        Shape::Sphere { .. } => (BodyKind::Sphere, Vec3::repeat(0.4 * radius * radius)),
-        Shape::Clump(clump) => (BodyKind::Clump, Vec3::from(clump.inertia) / clump.volume),
-        Shape::Box { half } => {
-            let half = Vec3::from(*half);
-            radius = half.norm();
-            (BodyKind::Solid, cuboid::inertia(&half))
-        }
-        Shape::Polyhedron(it) => {
-            radius = it.bounding_radius();
-            (BodyKind::Solid, Vec3::from(it.inertia) / it.volume)
-        }
+    let kind = match shape {
+        Shape::Sphere { .. } => BodyKind::Sphere,
+        _ if shape.query(|s| s.sphere_count()) > 0 => BodyKind::Clump,
+        _ => BodyKind::Solid,
     };
     Class {
         kind,
@@ -190,26 +179,13 @@ fn class(b: &BodyInput, shape: &Shape, density: f64, fixed: u8) -> Class {
         fixed,
         mass: b.mass,
         density,
-        volume,
-        radius,
-        gyration2,
+        volume: shape.query(|s| s.volume()),
+        radius: shape.query(|s| s.bounding_radius()),
+        gyration2: shape.query(|s| s.gyration2()),
     }
 }
 
-pub fn for_members(shape: &Shape, scale: f64, mut f: impl FnMut(Vec3, f64)) {
-    match shape {
-        Shape::Sphere { radius } => f(Vec3::zeros(), radius * scale),
-        Shape::Clump(clump) => clump.spheres.iter().for_each(|(c, r)| f(Vec3::from(*c) * scale, r * scale)),
-        Shape::Box { .. } | Shape::Polyhedron(_) => {}
-    }
-}
-
-pub fn volume(shape: &Shape, scale: f64) -> f64 {
-    let unit = match shape {
-        Shape::Sphere { radius } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
-        Shape::Clump(clump) => clump.volume,
-        Shape::Box { half } => 8.0 * half.iter().product::<f64>(),
-        Shape::Polyhedron(it) => it.volume,
-    };
-    unit * scale.powi(3)
+/// Calls `act` with centre and radius [m] of each sphere of a body at a scale.
+pub fn for_members(shape: &Shape, scale: f64, mut act: impl FnMut(Vec3, f64)) {
+    shape.query(|s| s.for_spheres(&mut |c, r| act(c * scale, r * scale)));
 }

@@ -71,10 +71,9 @@ pub struct Wet {
 impl Skin {
     #[doc(hidden)]
     pub fn of(shape: &Shape) -> Skin {
-        match shape {
-            Shape::Sphere { .. } | Shape::Clump(_) => Skin::default(),
-            Shape::Box { .. } => Skin::new(&shape.core(), 0.0),
-            Shape::Polyhedron(it) => Skin::new(&it.core, it.radius),
+        match shape.query(|s| s.sphere_count()) {
+            0 => Skin::new(&shape.core(), shape.rounding(1.0)),
+            _ => Skin::default(),
         }
     }
 

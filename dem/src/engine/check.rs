@@ -61,31 +61,9 @@ fn materials(input: &ModelInput) -> Result<(), ModelError> {
 
 fn shapes(input: &ModelInput) -> Result<(), ModelError> {
     for (shape, s) in input.shapes.iter().enumerate() {
-        let problem = match s {
-            Shape::Sphere { radius } if !positive(*radius) => {
-                format!("radius is {radius}; it must {POSITIVE}")
-            }
-            Shape::Box { half } if !half.iter().all(|&h| positive(h)) => {
-                format!("half sides are {half:?}; each must {POSITIVE}")
-            }
-            Shape::Polyhedron(it) if !positive(it.radius) || !positive(it.volume) => {
-                "radius and volume of a dilated polyhedron or disk must be positive".to_string()
-            }
-            Shape::Clump(c) if c.spheres.is_empty() => "a clump without spheres".to_string(),
-            Shape::Clump(c) if c.spheres.len() > 65_535 => {
-                format!("a clump of {} spheres; at most 65535", c.spheres.len())
-            }
-            Shape::Clump(c) if !positive(c.volume) || !c.inertia.iter().all(|&i| positive(i)) => {
-                "volume and inertia of a clump must be positive".to_string()
-            }
-            Shape::Clump(c)
-                if !c.spheres.iter().all(|(x, r)| positive(*r) && x.iter().all(|x| x.is_finite())) =>
-            {
-                "a sphere of the clump has no positive radius or no finite centre".to_string()
-            }
-            _ => continue,
-        };
-        return Err(ModelError::Shape { shape, problem });
+        if let Some(problem) = s.query(|s| s.fault()) {
+            return Err(ModelError::Shape { shape, problem });
+        }
     }
     Ok(())
 }
@@ -312,8 +290,7 @@ pub(crate) fn adhesion(input: &ModelInput) -> Result<(), ModelError> {
         return Ok(());
     };
     let error = |with| Err(ModelError::Adhesion { index, with });
-    if input.bodies.iter().any(|b| matches!(input.shapes[b.shape], Shape::Box { .. } | Shape::Polyhedron(_)))
-    {
+    if input.bodies.iter().any(|b| input.shapes[b.shape].query(|s| s.sphere_count()) == 0) {
         return error("boxes and polyhedra");
     }
     if !input.bonds.is_empty() {

@@ -8,7 +8,7 @@ use super::timestep::{self, DtLimit};
 use crate::base::Vec3;
 use crate::base::error::ModelError;
 use crate::base::names::Names;
-use crate::bodies::table::{Bodies, Body, BodyKind, for_members, volume};
+use crate::bodies::table::{Bodies, Body, BodyKind, for_members};
 use crate::body_force::{self, BodyForce, Skin};
 use crate::contact::narrow_phase::SheetView;
 use crate::law::{History, Laws, Linearised};
@@ -89,7 +89,7 @@ impl Sizes {
             let size = bodies.iter().map(|b| b.radius).fold(f64::INFINITY, f64::min);
             radii = if size.is_finite() { (0.1 * size, 0.1 * size) } else { (1.0, 1.0) };
         }
-        let largest = shapes.iter().map(|s| if let Shape::Clump(c) = s { c.spheres.len() } else { 1 });
+        let largest = shapes.iter().map(|shape| shape.query(|s| s.sphere_count()));
         let largest = largest.max().unwrap_or(1).max(1);
         let mean = if spheres > 0 { sum / spheres as f64 } else { radii.0 };
         Sizes { radii, spheres, largest, mean }
@@ -299,7 +299,7 @@ impl Model {
 
     /// Volume of a body [m³].
     pub fn volume(&self, body: usize) -> f64 {
-        volume(self.shape(body), self.body(body).scale)
+        self.shape(body).query(|s| s.volume()) * self.body(body).scale.powi(3)
     }
 
     /// Spheres in the body frame: centre [m], radius [m]; empty for a box.
@@ -310,11 +310,7 @@ impl Model {
     }
 
     pub(crate) fn member_count(&self, body: usize) -> u32 {
-        match self.shape(body) {
-            Shape::Sphere { .. } => 1,
-            Shape::Clump(clump) => clump.spheres.len() as u32,
-            Shape::Box { .. } | Shape::Polyhedron(_) => 0,
-        }
+        self.shape(body).query(|s| s.sphere_count()) as u32
     }
 
     /// Planes with unit normals.
@@ -353,10 +349,7 @@ impl Model {
         let radius = self.radii.1;
         let point = self.laws.stiffness(a, b, self.expected * radius, radius);
         let edge = self.laws.edges([a, b]).map_or(0.0, |[a, b]| {
-            let longest = |body: Body| match &self.shapes[body.shape] {
-                Shape::Polyhedron(it) => body.scale * it.core.longest_edge(),
-                _ => 0.0,
-            };
+            let longest = |body: Body| body.scale * self.shapes[body.shape].query(|s| s.longest_edge());
             self.bodies.iter().map(longest).fold(0.0, f64::max) * self.laws.stiffness(a, b, 0.0, 0.0)
         });
         (point.max(edge), self.laws.damping_ratio(a, b))

@@ -27,7 +27,6 @@ use crate::contact::narrow_phase::{DEEPEST, LENGTH};
 use crate::law::Laws;
 use crate::law::normal::Expected;
 use crate::shape::Shape;
-use crate::shape::clump::Clump;
 use crate::shape::dilated::Dilated;
 use crate::wall::set::Walls;
 use crate::wall::shells::Shells;
@@ -166,11 +165,10 @@ pub(crate) fn limit(
 
 /// Largest effective contact radius [m]: on a plane; for a box, largest sphere of the model.
 pub(crate) fn contact_radius(body: &Body, shape: &Shape, largest: f64) -> f64 {
-    match shape {
-        Shape::Sphere { .. } | Shape::Polyhedron(_) => body.radius,
-        Shape::Clump(clump) => body.scale * clump.spheres.iter().map(|s| s.1).fold(0.0, f64::max),
-        Shape::Box { .. } if largest > 0.0 => largest,
-        Shape::Box { .. } => body.radius,
+    match shape.query(|s| s.contact_radius()) {
+        Some(radius) => body.scale * radius,
+        None if largest > 0.0 => largest,
+        None => body.radius,
     }
 }
 
@@ -183,15 +181,8 @@ fn sides(
     (laws, b, corner): (&Laws, u32, f64),
 ) -> f64 {
     match shape {
-        Shape::Sphere { .. } => 12.0,
-        Shape::Clump(clump) => 2.0 * flat(clump).max(12) as f64,
-        Shape::Box { half } => {
-            let h = half.map(|h| 2.0 * h * body.scale / (2.0 * smallest) + 1.0);
-            let grains = 4.0 * (h[0] * h[1]).max(h[1] * h[2]).max(h[2] * h[0]);
-            // Two opposite sides, four contact points each.
-            if several { grains.max(16.0) } else { grains }
-        }
         Shape::Polyhedron(it) => 2.0 * faces(it, body, laws, b, corner),
+        _ => shape.query(|s| s.contacts(body.scale, smallest, several)),
     }
 }
 
@@ -289,45 +280,9 @@ pub(crate) fn partners(bodies: &Bodies, input: &ModelInput) -> Vec<usize> {
     (0..used.len()).filter(|&m| used[m]).collect()
 }
 
-/// Members touching a plane across a principal axis (within 0.1 of the largest radius).
-fn flat(clump: &Clump) -> usize {
-    let slack = 0.1 * clump.spheres.iter().map(|s| s.1).fold(0.0, f64::max);
-    let touching = |axis: usize, sign: f64| {
-        let reach = |s: &([f64; 3], f64)| sign * s.0[axis] + s.1;
-        let furthest = clump.spheres.iter().map(reach).fold(f64::NEG_INFINITY, f64::max);
-        clump.spheres.iter().filter(|s| reach(s) >= furthest - slack).count()
-    };
-    (0..3).map(|axis| touching(axis, 1.0).max(touching(axis, -1.0))).max().unwrap_or(0)
-}
-
 /// 1/m + max over principal axes of (lever arm)²/I [1/kg].
 fn compliance(body: &Body, shape: &Shape) -> f64 {
-    let mut reach2 = [0.0_f64; 3];
-    match shape {
-        Shape::Sphere { .. } => {}
-        Shape::Clump(clump) => {
-            for (c, r) in &clump.spheres {
-                for k in 0..3 {
-                    let (p, q) = (c[(k + 1) % 3], c[(k + 2) % 3]);
-                    reach2[k] = reach2[k].max((libm::hypot(p, q) + r).powi(2));
-                }
-            }
-        }
-        Shape::Box { half } => {
-            for k in 0..3 {
-                let (a, b) = (half[(k + 1) % 3].powi(2), half[(k + 2) % 3].powi(2));
-                // Over a side: a third of the squared half length along it, all of it across.
-                reach2[k] = (a + b / 3.0).max(a / 3.0 + b);
-            }
-        }
-        Shape::Polyhedron(it) => {
-            let half = it.half_extents();
-            for k in 0..3 {
-                let (a, b) = (half[(k + 1) % 3].powi(2), half[(k + 2) % 3].powi(2));
-                reach2[k] = (a + b / 3.0).max(a / 3.0 + b);
-            }
-        }
-    }
+    let reach2 = shape.query(|s| s.levers2());
     let turn = (0..3).map(|k| reach2[k] * body.scale * body.scale / body.inertia[k]).fold(0.0, f64::max);
     1.0 / body.mass + turn
 }

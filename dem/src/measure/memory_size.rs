@@ -5,21 +5,18 @@ use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::engine::work::Work;
 use crate::lanes::Simd;
-use crate::shape::Shape;
+use std::collections::BTreeSet;
 
 /// Describes the contact kernels of a model.
 pub fn kernels(model: &Model) -> String {
     let law = model.laws.title();
-    let has = |what: fn(&Shape) -> bool| (0..model.body_count()).any(|b| what(model.shape(b)));
-    let round = has(|s| matches!(s, Shape::Sphere { .. } | Shape::Clump(_)));
-    let names = [
-        (has(|s| matches!(s, Shape::Polyhedron(it) if it.core.rim.is_none())), "polyhedra"),
-        (has(|s| matches!(s, Shape::Polyhedron(it) if it.core.rim.is_some())), "disks"),
-        (has(|s| matches!(s, Shape::Box { .. })), "boxes"),
-        (round && model.clumps, "spheres of rigid bodies"),
-        (round && !model.clumps, "single spheres"),
-    ];
-    let names: Vec<&str> = names.into_iter().filter(|(there, _)| *there).map(|(_, name)| name).collect();
+    let used = || (0..model.body_count()).map(|body| model.shape(body));
+    let solids: BTreeSet<&str> = used().filter_map(|shape| shape.query(|s| s.solid_name())).collect();
+    // Polyhedra, disks, boxes.
+    let mut names: Vec<&str> = solids.into_iter().rev().collect();
+    if used().any(|shape| shape.query(|s| s.sphere_count()) > 0) {
+        names.push(if model.clumps { "spheres of rigid bodies" } else { "single spheres" });
+    }
     let shapes = names.join(", ");
     let rolling = if model.laws.rolls() { ", rolling and twisting" } else { "" };
     let bonds = if model.bonds.is_empty() { "" } else { ", bonds" };

@@ -8,10 +8,6 @@ use crate::base::Vec3;
 use crate::bodies::table::BodyKind;
 use crate::engine::model::Model;
 use crate::engine::state::State;
-use crate::shape::Shape;
-use crate::shape::dilated::Core;
-use crate::shape::dilated::edge_contact::{Segment, Target};
-use crate::shape::dilated::part::{Bounds, Part, View};
 
 /// Columns per side of a body on the border.
 pub const COLUMNS: usize = 40;
@@ -112,48 +108,5 @@ fn column_of_solid(model: &Model, state: &State, body: usize, x: f64, y: f64) ->
     let (turn, centre) = (state.orientation(model, body), state.position(body));
     let origin = turn.inverse_transform_vector(&(Vec3::new(x, y, 0.0) - centre));
     let along = turn.inverse_transform_vector(&Vec3::z());
-    if let Shape::Polyhedron(it) = model.shape(body) {
-        let scale = model.scale(body);
-        let [low, high] = chord(&it.core, it.radius, &(origin / scale), &along)?;
-        return Some((low * scale, high * scale));
-    }
-    let half = model.half(body);
-    let mut span = (f64::NEG_INFINITY, f64::INFINITY);
-    for d in 0..3 {
-        if along[d].abs() < 1e-14 {
-            if origin[d].abs() > half[d] {
-                return None;
-            }
-            continue;
-        }
-        let (a, b) = ((-half[d] - origin[d]) / along[d], (half[d] - origin[d]) / along[d]);
-        span = (span.0.max(a.min(b)), span.1.min(a.max(b)));
-    }
-    (span.0 < span.1).then_some(span)
-}
-
-/// Intersection of a line with a dilated core.
-fn chord(core: &Core, radius: f64, origin: &Vec3, along: &Vec3) -> Option<[f64; 2]> {
-    let reach = origin.norm() + core.reach + radius;
-    // The body is convex: one interval.
-    let mut inner = if core.rim.is_some() { [0.0; 2] } else { [-reach, reach] };
-    for face in &core.faces {
-        let (at, slope) = (face.normal.dot(origin) - face.offset, face.normal.dot(along));
-        if slope > 0.0 {
-            inner[1] = inner[1].min(-at / slope);
-        } else if slope < 0.0 {
-            inner[0] = inner[0].max(-at / slope);
-        } else if at > 0.0 {
-            inner[1] = f64::NEG_INFINITY;
-        }
-    }
-    let mut all = if inner[0] < inner[1] { inner } else { [f64::INFINITY, f64::NEG_INFINITY] };
-    let [from, to] = [-reach, reach].map(|s| origin + along * s);
-    let view = View::everywhere(*along, radius);
-    let around = Bounds::near([&from, &to], &view);
-    let segment = Segment { from, direction: *along, range: [0.0, 2.0 * reach], around };
-    Part::none(core, view).all().stretches(&segment, radius, |[low, high], _| {
-        all = [all[0].min(low - reach), all[1].max(high - reach)];
-    });
-    (all[0] < all[1]).then_some(all)
+    model.shape(body).query(|shape| shape.chord(model.scale(body), &origin, &along))
 }

@@ -16,10 +16,5 @@ pub fn stones(model: &Model, counted: impl Fn(usize) -> bool) -> Vec<(f64, f64)>
 
 /// Sieve size of a shape at scale 1 [m]; `None` for a box.
 pub fn size_of(shape: &Shape) -> Option<f64> {
-    match shape {
-        Shape::Sphere { radius } => Some(2.0 * radius),
-        Shape::Clump(clump) => Some(clump.sieve_size()),
-        Shape::Polyhedron(it) => Some(it.sieve_size()),
-        Shape::Box { .. } => None,
-    }
+    shape.query(|s| s.sieve_size())
 }

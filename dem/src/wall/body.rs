@@ -16,6 +16,7 @@ use crate::bodies::block::Rotation;
 use crate::contact::scalar;
 use crate::integrate::step_size::StepSize;
 use crate::law::{ContactGeometry, History, Laws};
+use crate::shape::cuboid;
 use crate::shape::plane::{Plane, PlaneMotion};
 use crate::spatial::detect;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
@@ -224,11 +225,8 @@ impl Body {
     pub fn step_limit(&self, k: f64, tangential: f64, zeta: f64, r: f64) -> f64 {
         let n = self.half.map(|h| h / r + 1.0);
         let sides = 4.0 * (n.x * n.y).max(n.y * n.z).max(n.z * n.x);
-        let lever = |d: usize| {
-            let (a, b) = (self.half[(d + 1) % 3].powi(2), self.half[(d + 2) % 3].powi(2));
-            (a + b / 3.0).max(a / 3.0 + b)
-        };
-        let turn = if self.fixed >> 3 == 7 { 0.0 } else { (0..3).map(lever).fold(0.0, f64::max) };
+        let lever = || cuboid::levers2(&self.half).into_iter().fold(0.0, f64::max);
+        let turn = if self.fixed >> 3 == 7 { 0.0 } else { lever() };
         let own = k.max(tangential) * (1.0 / self.mass + turn / self.inertia.min());
         let zeta = zeta * (0.5 * sides).sqrt();
         let mount = self.mount_frequency();

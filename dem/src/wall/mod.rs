@@ -18,4 +18,4 @@ pub(crate) mod triangulated;
 
 pub use input::{Motion, Mount, Oscillation, RigidBody, TriangleSurface, WallInput};
 pub use servo::Servo;
-pub use shape::{Outline, PlanCircle, WallShape, square};
+pub use shape::{PlanCircle, WallShape, square};

@@ -1,6 +1,7 @@
 //! Wall shapes: all that other files compute from the kind.
 
 use crate::base::Vec3;
+use crate::shape::body_shape::Outline;
 use crate::spatial::round::Round;
 
 /// Points around a ring of an outline.
@@ -44,9 +45,6 @@ pub enum WallShape {
         radius: f64,
     },
 }
-
-/// Points and polygons by point numbers.
-pub type Outline = (Vec<Vec3>, Vec<Vec<u32>>);
 
 /// Upright round wall in plan.
 #[derive(Clone, Copy, Debug)]
@@ -269,7 +267,7 @@ fn across(k: &Vec3) -> (Vec3, Vec3) {
 }
 
 /// Returns a square of a plane next to the grains.
-pub fn square(point: &Vec3, normal: &Vec3, (centre, half): (Vec3, f64)) -> (Vec<Vec3>, Vec<Vec<u32>>) {
+pub fn square(point: &Vec3, normal: &Vec3, (centre, half): (Vec3, f64)) -> Outline {
     let middle = centre - normal * (centre - point).dot(normal);
     let (u, v) = across(normal);
     let corner = |a: f64, b: f64| middle + (u * a + v * b) * half;

@@ -4,7 +4,6 @@ use super::context::Context;
 use super::item::{Item, Shape, union};
 use super::palette;
 use super::walls::{rectangle, round};
-use trackbed_dem::shape::Shape as Body;
 use trackbed_dem::{BodyInput, Vec3, WallShape};
 use trackbed_input::model::grains::{GrainsPart, OutletRegion};
 use trackbed_input::scene::grains::Grains;
@@ -33,19 +32,15 @@ pub fn groups(c: &Context) -> Vec<Item> {
 
 fn add(shape: &mut Shape, body: &BodyInput, index: u32, part: &GrainsPart) {
     let place = |x: &Vec3| body.position + body.orientation * (x * body.scale);
-    let ball = |x: [f64; 3], r: f64| {
-        let at = place(&Vec3::from(x));
-        [at.x, at.y, at.z, r * body.scale]
-    };
-    match &part.groups.shapes[body.shape] {
-        Body::Sphere { radius } => shape.spheres.push(ball([0.0; 3], *radius)),
-        Body::Clump(clump) => shape.spheres.extend(clump.spheres.iter().map(|(x, r)| ball(*x, *r))),
-        Body::Polyhedron(it) => {
-            let (points, polygons) = it.outline();
+    part.groups.shapes[body.shape].query(|it| {
+        it.for_spheres(&mut |x, r| {
+            let at = place(&x);
+            shape.spheres.push([at.x, at.y, at.z, r * body.scale]);
+        });
+        if let Some((points, polygons)) = it.outline() {
             shape.polygons(points.iter().map(|x| place(x).into()), polygons.iter().map(Vec::as_slice));
         }
-        Body::Box { .. } => {}
-    }
+    });
     let numbered = if shape.points.is_empty() { shape.spheres.len() } else { shape.points.len() };
     shape.ids.resize(numbered, index);
 }

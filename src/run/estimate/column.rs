@@ -140,11 +140,7 @@ fn late(course: &[[f64; 2]]) -> Option<f64> {
 
 /// Counts spheres, or equivalent cost.
 fn members(shape: &Shape) -> usize {
-    match shape {
-        Shape::Clump(clump) => clump.spheres.len(),
-        Shape::Polyhedron(_) => POLYHEDRON,
-        Shape::Sphere { .. } | Shape::Box { .. } => 1,
-    }
+    if shape.dilated() { POLYHEDRON } else { shape.query(|s| s.sphere_count()).max(1) }
 }
 
 fn unbroken(mut numbers: Vec<usize>, bonds: &[BondInput], count: usize) -> Vec<usize> {
@@ -177,15 +173,7 @@ fn cut(input: &ModelInput, all: usize) -> (Vec<usize>, Vec<Plane>, f64) {
         return (numbers, Vec::new(), 1.0);
     }
     let there: Vec<&BodyInput> = numbers.iter().map(|&b| &input.bodies[b]).collect();
-    let reach = |b: &BodyInput| {
-        b.scale
-            * match &input.shapes[b.shape] {
-                Shape::Sphere { radius } => *radius,
-                Shape::Clump(clump) => clump.bounding_radius(),
-                Shape::Box { half } => Vec3::from(*half).norm(),
-                Shape::Polyhedron(it) => it.bounding_radius(),
-            }
-    };
+    let reach = |b: &BodyInput| b.scale * input.shapes[b.shape].query(|s| s.bounding_radius());
     let ends = |d: usize| {
         let x = there.iter().map(|b| b.position[d]);
         x.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])

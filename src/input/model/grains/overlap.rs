@@ -6,7 +6,6 @@ use crate::scene::{Document, SceneError};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::measure::ContactRecord;
-use trackbed_dem::shape::Shape;
 use trackbed_dem::surface::NoSurface;
 use trackbed_dem::{Model, ModelInput, Partner, State, Vec3};
 
@@ -273,13 +272,7 @@ fn ends(c: &ContactRecord) -> Vec<usize> {
 /// Reference radius [m]: smallest clump sphere, half the shortest box side, equal-volume sphere of a
 /// polyhedron.
 fn radius(model: &Model, body: usize) -> f64 {
-    let scale = model.scale(body);
-    match model.shape(body) {
-        Shape::Sphere { radius } => scale * radius,
-        Shape::Clump(clump) => scale * clump.spheres.iter().map(|s| s.1).fold(f64::INFINITY, f64::min),
-        Shape::Box { half } => scale * half.iter().copied().fold(f64::INFINITY, f64::min),
-        Shape::Polyhedron(it) => scale * libm::cbrt(0.75 * it.volume / std::f64::consts::PI),
-    }
+    model.scale(body) * model.shape(body).query(|s| s.reference_radius())
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Grains of random sizes, stacked in a box.
 
-use super::part::{GroupsPart, bounding_radius};
+use super::part::GroupsPart;
 use super::shapes::{Sampled, drawn, shapes, unit_volumes};
 use super::sizes::SizeSource;
 use super::target::{Amount, HIGHEST, Site, amount, bed};
@@ -27,7 +27,8 @@ pub(super) fn filled(
     let source = SizeSource::of(group)?;
     let how_much = Amount::of(group, &site, (&source, &units), density)?;
     let grains: Vec<Sampled> = drawn(group, part, source, how_much.count, (first, &unit_scale));
-    let radii: Vec<f64> = grains.iter().map(|b| b.scale * bounding_radius(&part.shapes[b.shape])).collect();
+    let radii: Vec<f64> =
+        grains.iter().map(|b| b.scale * part.shapes[b.shape].query(|s| s.bounding_radius())).collect();
 
     let mut low = vector(&fill.low);
     let high = [fill.high[0].si, fill.high[1].si];

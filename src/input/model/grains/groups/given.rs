@@ -1,7 +1,7 @@
 //! Grains with given positions.
 
 use super::part::GroupsPart;
-use super::shapes::shapes;
+use super::shapes::{placing, shapes};
 use crate::model::tables;
 use crate::scene::Table;
 use crate::scene::grains::{GrainShape, Grains};
@@ -12,15 +12,7 @@ use trackbed_dem::{BodyInput, Vec3};
 use trackbed_io::failure::Failure;
 
 pub(super) fn given(group: &Table<Grains>, model: &BodyInput, part: &mut GroupsPart) -> Result<(), Failure> {
-    let (found, expected) = match group.shape {
-        GrainShape::Bonded => ("\"bonded\"", "`fill`, which bonded stones need"),
-        GrainShape::Clump => ("\"clump\"", "`fill`, `region` or `packing`, which clumps need"),
-        GrainShape::Polyhedron => {
-            ("\"polyhedron\"", "`fill`, `region`, `packing`, `floes` or `frustum`, which polyhedra need")
-        }
-        GrainShape::Disk => ("\"disk\"", "`fill`, `region`, `packing` or `floes`, which disks need"),
-        GrainShape::Sphere => return spheres(group, model, part),
-    };
+    let Some((found, expected)) = placing(group.shape) else { return spheres(group, model, part) };
     match &group.packing {
         Some(file) if group.shape != GrainShape::Bonded => stones(group, file, model, part),
         _ => Err(group.error("shape", found, expected).into()),

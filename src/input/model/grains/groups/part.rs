@@ -38,7 +38,7 @@ pub struct GroupsPart {
 impl GroupsPart {
     /// Returns the bounding radius about the centre of mass [m].
     pub fn reach(&self, body: &BodyInput) -> f64 {
-        body.scale * bounding_radius(&self.shapes[body.shape])
+        body.scale * self.shapes[body.shape].query(|s| s.bounding_radius())
     }
 
     /// Returns the mean bounding radius of the grains [m].
@@ -124,23 +124,4 @@ pub struct GrowthPlan {
     pub container: Container,
     /// Growth parameters.
     pub how: Growth,
-}
-
-/// Bounding radius about the centre of mass at scale 1 [m].
-pub(super) fn bounding_radius(shape: &Shape) -> f64 {
-    match shape {
-        Shape::Sphere { radius } => *radius,
-        Shape::Clump(clump) => clump.bounding_radius(),
-        Shape::Box { half } => half.iter().map(|h| h * h).sum::<f64>().sqrt(),
-        Shape::Polyhedron(it) => it.bounding_radius(),
-    }
-}
-
-pub(super) fn shape_volume(shape: &Shape) -> f64 {
-    match shape {
-        Shape::Sphere { radius } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
-        Shape::Clump(clump) => clump.volume,
-        Shape::Box { half } => 8.0 * half.iter().product::<f64>(),
-        Shape::Polyhedron(it) => it.volume,
-    }
 }

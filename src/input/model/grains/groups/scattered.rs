@@ -1,7 +1,7 @@
 //! Grains at random positions in containers.
 
 use super::container::container;
-use super::part::{GradedGroup, GroupsPart, GrowthPlan, bounding_radius, shape_volume};
+use super::part::{GradedGroup, GroupsPart, GrowthPlan};
 use super::shapes::{MOST, deal, shapes};
 use super::sizes::SizeSource;
 use crate::scene::grains::{Grains, GrowthSource, Region};
@@ -25,10 +25,9 @@ pub(super) fn scattered(
     let first = part.shapes.len();
     let unit_scale = shapes(group, part)?;
     // At sieve size 1 m, by shape.
-    let unit = |k: usize| &part.shapes[first + k];
-    let unit_volume: Vec<f64> =
-        unit_scale.iter().enumerate().map(|(k, s)| s.powi(3) * shape_volume(unit(k))).collect();
-    let reach: Vec<f64> = unit_scale.iter().enumerate().map(|(k, s)| s * bounding_radius(unit(k))).collect();
+    let scaled = || unit_scale.iter().zip(&part.shapes[first..]);
+    let unit_volume: Vec<f64> = scaled().map(|(s, unit)| s.powi(3) * unit.query(|u| u.volume())).collect();
+    let reach: Vec<f64> = scaled().map(|(s, unit)| s * unit.query(|u| u.bounding_radius())).collect();
     let source = SizeSource::of(group)?;
     let mean_volume = source.mean_cube() * unit_volume.iter().sum::<f64>() / unit_volume.len() as f64;
 

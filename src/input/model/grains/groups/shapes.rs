@@ -1,7 +1,7 @@
 //! Grain shapes and sizes.
 
 use super::bonded;
-use super::part::{GradedGroup, GroupsPart, shape_volume};
+use super::part::{GradedGroup, GroupsPart};
 use super::sizes::SizeSource;
 use crate::model::tables;
 use crate::scene::grains::{GrainShape, Grains};
@@ -65,7 +65,7 @@ pub(super) fn unit_volumes(
         return bonded::volumes(group);
     }
     let own = part.shapes[first..].iter().zip(unit_scale);
-    Ok(own.map(|(shape, scale)| shape_volume(shape) * scale.powi(3)).collect())
+    Ok(own.map(|(shape, scale)| shape.query(|s| s.volume()) * scale.powi(3)).collect())
 }
 
 /// Returns scales for a sieve size of 1 m.
@@ -103,6 +103,19 @@ pub(super) fn shapes(group: &Table<Grains>, part: &mut GroupsPart) -> Result<Vec
             Ok(vec![1.0])
         }
     }
+}
+
+/// Shape and keys that place its grains; `None`: coordinates do.
+pub(super) fn placing(shape: GrainShape) -> Option<(&'static str, &'static str)> {
+    Some(match shape {
+        GrainShape::Sphere => return None,
+        GrainShape::Bonded => ("\"bonded\"", "`fill`, which bonded stones need"),
+        GrainShape::Clump => ("\"clump\"", "`fill`, `region` or `packing`, which clumps need"),
+        GrainShape::Polyhedron => {
+            ("\"polyhedron\"", "`fill`, `region`, `packing`, `floes` or `frustum`, which polyhedra need")
+        }
+        GrainShape::Disk => ("\"disk\"", "`fill`, `region`, `packing` or `floes`, which disks need"),
+    })
 }
 
 /// Deals shapes in order of size: mass per size³ differs between shapes, which would bias the sieve curve.

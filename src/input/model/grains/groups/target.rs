@@ -1,6 +1,6 @@
 //! Fill targets: number of grains for a height or a mass, and the bed expected of a fill.
 
-use super::part::{FilledGroup, GroupsPart, shape_volume};
+use super::part::{FilledGroup, GroupsPart};
 use super::shapes::MOST;
 use super::sizes::SizeSource;
 use crate::scene::grains::{FillBox, Grains};
@@ -70,7 +70,8 @@ impl Site {
             let inside = (0..2).all(|d| (low[d]..=high[d]).contains(&b.position[d]));
             !b.absent && inside && b.position.z > floor && !part.fouling.contains(&b.part)
         };
-        let solid = |b: &trackbed_dem::BodyInput| shape_volume(&part.shapes[b.shape]) * b.scale.powi(3);
+        let solid =
+            |b: &trackbed_dem::BodyInput| part.shapes[b.shape].query(|s| s.volume()) * b.scale.powi(3);
         let before = part.bodies.iter().filter(below).map(solid).sum();
         Site { low, high, floor, before, sides }
     }
