@@ -13,5 +13,8 @@ pub mod integrate;
 pub mod law;
 #[doc(hidden)]
 pub mod pairs;
+#[cfg(test)]
+#[path = "../geometry/shape/dilated/tables.rs"]
+mod tables;
 
 use trackbed_geometry::{base, lanes, shape, spatial};

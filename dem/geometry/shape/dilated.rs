@@ -359,5 +359,7 @@ impl Dilated {
 }
 
 #[cfg(test)]
+mod tables;
+#[cfg(test)]
 #[path = "dilated/dilated_tests.rs"]
-pub mod tests;
+mod tests;

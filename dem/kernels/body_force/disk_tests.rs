@@ -1,5 +1,5 @@
 use super::*;
-use crate::shape::dilated::tests::rows;
+use crate::tables::rows;
 use nalgebra::UnitQuaternion;
 
 /// Table checked to 4e-8 by slicing in another direction.

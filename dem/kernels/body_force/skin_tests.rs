@@ -1,5 +1,5 @@
 use super::*;
-use crate::shape::dilated::tests::{corners, rows};
+use crate::tables::{corners, rows};
 use nalgebra::{Quaternion, UnitQuaternion};
 
 fn wet(skin: &Skin, row: &[f64]) -> (f64, Vec3) {

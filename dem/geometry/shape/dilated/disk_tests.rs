@@ -1,5 +1,5 @@
 use super::*;
-use crate::shape::dilated::tests::rows;
+use crate::shape::dilated::tables::rows;
 use crate::shape::dilated::{Dilated, DilatedError};
 
 /// Reference table confirmed by slices to 4e-16.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::shape::dilated::tests::rows;
+use crate::tables::rows;
 
 const G: f64 = 9.81;
 

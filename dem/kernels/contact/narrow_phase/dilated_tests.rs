@@ -3,7 +3,7 @@ use crate::base::random::Random;
 use crate::shape::Shape;
 use crate::shape::cuboid;
 use crate::shape::dilated::Dilated;
-use crate::shape::dilated::tests::{corners, rows};
+use crate::tables::{corners, rows};
 
 pub(super) fn placed<'a>(
     shape: &'a Shape,

@@ -6,7 +6,7 @@ use super::*;
 use crate::base::random::Random;
 use crate::shape::Shape;
 use crate::shape::dilated::Dilated;
-use crate::shape::dilated::tests::{corners, rows};
+use crate::tables::{corners, rows};
 use std::f64::consts::TAU;
 
 fn disk(radius: f64, rounding: f64) -> Shape {
