@@ -21,8 +21,17 @@ pub(super) const SMALL: [&str; 12] = [
 
 /// Runs with 1, 2 and 3 threads; requires equal files, `expected` among them.
 pub(super) fn same_bits(scene: &Path, set: &[&str], expected: &[&str]) -> Folder {
+    same_bits_on(["1", "2", "3"], scene, set, expected)
+}
+
+pub(super) fn same_bits_on<const N: usize>(
+    threads: [&str; N],
+    scene: &Path,
+    set: &[&str],
+    expected: &[&str],
+) -> Folder {
     let folder = Folder::new("threads");
-    let outs = ["1", "2", "3"].map(|threads| {
+    let outs = threads.map(|threads| {
         let out = folder.join(threads);
         let mut arguments: Vec<String> =
             ["run", &scene.display().to_string(), "--quiet", "--threads", threads, "--out"]
@@ -34,13 +43,14 @@ pub(super) fn same_bits(scene: &Path, set: &[&str], expected: &[&str]) -> Folder
         assert_eq!(json(&out.join("summary.json"))["threads"].to_string(), threads);
         out
     });
-    let [one, others @ ..] = outs.each_ref().map(|out| results(out));
+    let files = outs.each_ref().map(|out| results(out));
+    let (one, others) = files.split_first().expect("one thread at least");
     for name in expected {
         assert!(one.contains_key(*name), "no {name} among {:?}", one.keys());
     }
-    for (other, threads) in others.iter().zip([2, 3]) {
+    for (other, threads) in others.iter().zip(&threads[1..]) {
         assert!(one.keys().eq(other.keys()), "{threads} threads leave other files");
-        for (name, bytes) in &one {
+        for (name, bytes) in one {
             assert!(*bytes == other[name], "{name} differs between 1 and {threads} threads");
         }
     }

@@ -53,7 +53,7 @@ pub fn step<S: Surface>(
     }
     if state.steps > 0 && state.steps.is_multiple_of(reordering::EVERY) {
         state.reorder(model);
-        work.arrange(model, state);
+        work.rebuild_layout(model, state);
     }
     prepare(model, state, work, surface, applied)?;
     neighbour_list::update(model, state, work, surface, Listed::All);

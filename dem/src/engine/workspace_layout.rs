@@ -46,13 +46,13 @@ impl Work {
             own: 0..0,
             halo: Vec::new(),
         };
-        work.arrange(model, state);
+        work.rebuild_layout(model, state);
         work
     }
 
     /// Attaches to another state of the same model, with bitwise identical results.
     pub fn follow(&mut self, model: &Model, state: &State) {
-        self.arrange(model, state);
+        self.rebuild_layout(model, state);
     }
 
     /// Updates clump spheres.
@@ -65,7 +65,7 @@ impl Work {
         }
     }
 
-    pub(crate) fn arrange(&mut self, model: &Model, state: &State) {
+    pub(crate) fn rebuild_layout(&mut self, model: &Model, state: &State) {
         self.searched.listed = None;
         self.own = 0..state.blocks.len();
         self.halo.clear();
