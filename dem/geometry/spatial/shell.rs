@@ -3,7 +3,7 @@
 //! Triangles move inwards by the rounding radius, so that the rounded surface keeps the given faces; corners
 //! move to the intersection of offset planes (least squares).
 //!
-//! Limits: at sharp angles a corner moves at most [`FARTHEST`] radii.
+//! Limits: at sharp angles a corner moves at most `FARTHEST` radii.
 
 use super::bvh::{Aabb, Bvh};
 use super::facet::{self, Facet};
