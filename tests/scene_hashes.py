@@ -148,7 +148,7 @@ def digest_of(path):
         return f"unreadable: {error}"
     if path.name == "log.txt":
         content = re.sub(rb"; time: assembly .*", b"", content)
-        content = re.sub(rb"(?m)^(.+): [0-9.]+ s, ([0-9]+ DEM steps)", rb"\1: \2", content)
+        content = re.sub(rb"(?m)^(.+): [0-9.]+ s, ([0-9]+ (?:DEM|FEM) steps)", rb"\1: \2", content)
     return hashlib.sha256(content).hexdigest()
 
 

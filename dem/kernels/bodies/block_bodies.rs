@@ -43,6 +43,7 @@ pub fn common<T: Copy + PartialEq>(mut all: impl Iterator<Item = T>) -> Option<T
 }
 
 impl BlockBodies {
+    #[inline]
     pub fn in_clumps(&self) -> usize {
         let counts = self.first.windows(2).map(|w| (w[1] - w[0]) as usize);
         counts.filter(|count| *count > 1).sum()
@@ -88,11 +89,13 @@ impl BlockBodies {
         }
     }
 
+    #[inline]
     pub fn solid(&self) -> bool {
         self.kind.first() == Some(&BodyKind::Solid)
     }
 
     /// Whether all bodies are free and consist of spheres.
+    #[inline]
     pub fn plain(&self) -> bool {
         self.round && self.fixed.is_empty()
     }
@@ -108,6 +111,7 @@ impl BlockBodies {
         self.owner.get(sphere as usize).copied().unwrap_or(sphere)
     }
 
+    #[inline]
     pub fn of_body(&self, k: usize) -> Range<u32> {
         if self.rigid { self.first[k]..self.first[k + 1] } else { k as u32..k as u32 + 1 }
     }
@@ -123,6 +127,7 @@ impl BlockBodies {
         if self.rigid { &self.spheres } else { &block.centre }
     }
 
+    #[inline]
     pub fn spheres_of(&self, k: usize) -> &[Vec4] {
         &self.spheres[self.first[k] as usize..self.first[k + 1] as usize]
     }

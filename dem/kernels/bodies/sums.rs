@@ -73,6 +73,7 @@ pub struct DashpotSum {
 impl DashpotSum {
     /// Dashpot dissipation beyond the computed one [W], based on the mean wall velocity: `now` [m/s] at the
     /// last half step, `change` since the previous one, `next` at the coming one.
+    #[inline]
     pub fn lag(&self, now: &Vec3, change: &Vec3, next: &Vec3) -> f64 {
         let beyond = (next - now) * 0.5;
         self.latest.dot(&beyond) + self.extrapolated.dot(&(beyond - change * 0.5))

@@ -106,18 +106,22 @@ impl Bodies {
         Ok(bodies)
     }
 
+    #[inline]
     pub fn len(&self) -> usize {
         self.scale.len()
     }
 
+    #[inline]
     fn class(&self, k: usize) -> &Class {
         &self.classes[self.class.get(k).map_or(0, |&c| c as usize)]
     }
 
+    #[inline]
     pub fn kind(&self, k: usize) -> BodyKind {
         self.class(k).kind
     }
 
+    #[inline]
     pub fn get(&self, k: usize) -> Body {
         let c = self.class(k);
         let scale = self.scale[k];
@@ -136,30 +140,37 @@ impl Bodies {
         }
     }
 
+    #[inline]
     pub fn iter(&self) -> impl Iterator<Item = Body> + '_ {
         (0..self.len()).map(|k| self.get(k))
     }
 
+    #[inline]
     pub fn positions(&self) -> Option<&[Vec3]> {
         self.positions.as_deref()
     }
 
+    #[inline]
     pub fn forget_positions(&mut self) {
         self.positions = None;
     }
 
+    #[inline]
     pub fn orientation(&self, k: usize) -> UnitQuaternion<f64> {
         self.orientations.get(k).copied().unwrap_or_default()
     }
 
+    #[inline]
     pub fn velocity(&self, k: usize) -> Vec3 {
         self.velocities.get(k).copied().unwrap_or_default()
     }
 
+    #[inline]
     pub fn spin(&self, k: usize) -> Vec3 {
         self.spins.get(k).copied().unwrap_or_default()
     }
 
+    #[inline]
     pub fn absent(&self, k: usize) -> bool {
         self.absent.get(k).is_some_and(|a| *a)
     }
