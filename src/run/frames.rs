@@ -346,8 +346,11 @@ fn walls(view: GrainsView<'_>, part: &GrainsPart) -> (WallFrame, Vec<u32>) {
     id = wall_output::polygons(view, part, extent, id, &mut frame);
     for body in 0..view.model.body_count() {
         let shape = view.model.shape(body);
-        let Some((points, polygons)) = shape.query(|s| s.outline()) else { continue };
-        if view.state.present(body) {
+        if shape.query(|s| s.sphere_count()) > 0 {
+            continue;
+        }
+        let outline = view.state.present(body).then(|| shape.query(|s| s.outline())).flatten();
+        if let Some((points, polygons)) = outline {
             let (x, q) = (view.state.position(body), view.state.orientation(view.model, body));
             let scale = view.model.scale(body);
             let points: Vec<dem::Vec3> = points.iter().map(|p| x + q * (p * scale)).collect();

@@ -35,7 +35,7 @@ pub fn resolve(document: &Document, file: &StudyFile) -> Result<Option<Samples>,
         return Err(document.problem("sampling", Problem::requirement("`parameter`")));
     }
     let others = [
-        ("combine", file.combine.is_some() && file.axis.is_empty()),
+        ("combine", file.combine.is_some()),
         ("reference", file.reference.is_some()),
         ("tolerance", file.tolerance.is_some()),
     ];

@@ -50,13 +50,13 @@ impl Regression {
         Some(Regression { coefficients, standard_errors, slopes, intercept, r_squared })
     }
 
-    /// Fits y to the columns that `counts`; the others have coefficients of zero.
-    pub fn fit_some(x: &[Vec<f64>], counts: &[bool], y: &[f64]) -> Option<Regression> {
-        let some: Vec<Vec<f64>> = x.iter().zip(counts).filter(|(_, c)| **c).map(|(x, _)| x.clone()).collect();
+    /// Fits y to the columns that are `fitted`; the others have coefficients of zero.
+    pub fn fit_some(x: &[Vec<f64>], fitted: &[bool], y: &[f64]) -> Option<Regression> {
+        let some: Vec<Vec<f64>> = x.iter().zip(fitted).filter(|(_, f)| **f).map(|(x, _)| x.clone()).collect();
         let mut fit = Regression::fit(&some, y)?;
         for list in [&mut fit.coefficients, &mut fit.standard_errors, &mut fit.slopes] {
             let mut own = std::mem::take(list).into_iter();
-            list.extend(counts.iter().map(|c| if *c { own.next().unwrap_or(0.0) } else { 0.0 }));
+            list.extend(fitted.iter().map(|f| if *f { own.next().unwrap_or(0.0) } else { 0.0 }));
         }
         Some(fit)
     }

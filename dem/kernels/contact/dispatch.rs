@@ -23,7 +23,7 @@ macro_rules! build {
 }
 
 macro_rules! select {
-    ($rigid:expr, $turning:expr, $loop:ident, $run:path, $simd:expr, $fields:tt) => {
+    ($rigid:expr, $turning:expr, $loop:ident, $run:ident, $simd:ident, $fields:tt) => {
         match ($rigid, $turning) {
             (false, false) => $run($simd, build!($loop, false, false, $fields)),
             (false, true) => $run($simd, build!($loop, false, true, $fields)),
@@ -39,17 +39,21 @@ fn run_any<K: Kernel>(_: Simd, kernel: K) -> K::Output {
     kernel.run::<Portable>()
 }
 
+/// Evaluates with the table in use and the function that runs kernels of it.
+///
 /// Unit tests of this crate run no loop over bodies, which spares them the compilation of 140 loops; those of
 /// `dem` run all.
-macro_rules! of_law {
-    ($laws:ident, $rigid:expr, $turning:expr, $loop:ident, $simd:expr, $fields:tt) => {
+macro_rules! by_law {
+    ($laws:ident, $simd:ident, $run:ident => $body:expr) => {
         if cfg!(test) {
             unreachable!("loops over bodies are tested in `dem`");
         } else if $simd.any_law_only() {
             let $laws = &$laws.any;
-            select!($rigid, $turning, $loop, run_any, $simd, $fields)
+            use run_any as $run;
+            $body
         } else {
-            with_law!($laws, $laws => select!($rigid, $turning, $loop, lanes::run_native, $simd, $fields))
+            use lanes::run_native as $run;
+            with_law!($laws, $laws => $body)
         }
     };
 }
@@ -65,7 +69,9 @@ pub fn between(
     out: &mut CrossForces,
 ) {
     let turning = lists.spheres.turning;
-    of_law!(laws, clumps, turning, Between, simd, { laws, blocks, members, material, b, lists, out, dt });
+    by_law!(laws, simd, run => {
+        select!(clumps, turning, Between, run, simd, { laws, blocks, members, material, b, lists, out, dt })
+    });
 }
 
 /// Prefetches body records, read in random order.
@@ -91,7 +97,9 @@ pub fn interior(
     next: Prefetch<'_>,
 ) {
     let (rigid, turning) = (members.rigid, pairs.turning);
-    of_law!(laws, rigid, turning, Interior, simd, { laws, block, pairs, members, totals, next, dt });
+    by_law!(laws, simd, run => {
+        select!(rigid, turning, Interior, run, simd, { laws, block, pairs, members, totals, next, dt })
+    });
 }
 
 /// `material`: common material of the planes.
@@ -104,27 +112,17 @@ pub fn planes(
     totals: &mut BlockTotals,
 ) {
     let (rigid, turning) = (members.rigid, pairs.turning);
-    of_law!(laws, rigid, turning, Planes, simd, { laws, planes, material, block, pairs, members, totals, dt });
+    by_law!(laws, simd, run => {
+        select!(rigid, turning, Planes, run, simd, { laws, planes, material, block, pairs, members, totals, dt })
+    });
 }
 
 /// `turning`: resistance against rolling or twisting, or adhesion possible.
 pub fn patch_forces(setting: &StepContext<'_>, turning: bool, block: &Block, forces: &mut [PatchForce]) {
     let &StepContext { laws, simd, dt } = setting;
-    if cfg!(test) {
-        unreachable!("loops over bodies are tested in `dem`");
-    }
-    if simd.any_law_only() {
-        let laws = &laws.any;
-        if turning {
-            run_any(simd, PatchLaw::<_, true> { laws, block, forces, dt });
-        } else {
-            run_any(simd, PatchLaw::<_, false> { laws, block, forces, dt });
-        }
-        return;
-    }
-    with_law!(laws, laws => if turning {
-        lanes::run_native(simd, PatchLaw::<_, true> { laws, block, forces, dt });
+    by_law!(laws, simd, run => if turning {
+        run(simd, PatchLaw::<_, true> { laws, block, forces, dt });
     } else {
-        lanes::run_native(simd, PatchLaw::<_, false> { laws, block, forces, dt });
+        run(simd, PatchLaw::<_, false> { laws, block, forces, dt });
     });
 }

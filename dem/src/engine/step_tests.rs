@@ -3,6 +3,7 @@ use crate::base::Vec3;
 use crate::bodies::input::BodyInput;
 use crate::engine::input::ModelInput;
 use crate::lanes::Simd;
+use crate::law::LawTable;
 use crate::law::material::{Material, PairOverride};
 use crate::shape::Shape;
 use crate::shape::clump::Clump;
@@ -98,6 +99,25 @@ fn all_lanes_give_the_same_bits() {
         let plain = bits(&model, 500, false, Simd::Portable);
         for simd in Simd::all() {
             assert!(bits(&model, 500, false, simd) == plain, "{simd:?}, hertz {hertz}, clumps {clumps}");
+        }
+    }
+}
+
+/// Tables of one law and of its special case against the loops of any law (plain arrays on x86-64).
+#[test]
+fn loops_of_a_law_and_of_any_law_agree() {
+    let rough = |m: Material| Material { asperity_friction: 0.4, asperity_pressure: 2e4, ..m };
+    let conical = |m: Material| Material { corner_strength: 3e5, corner_angle: 1.36, ..m };
+    for hertz in [false, true] {
+        let mut input = heap_input(hertz, true);
+        input.materials[0] = if hertz { conical(input.materials[0]) } else { rough(input.materials[0]) };
+        input.contacts.clear();
+        let model = Model::new(input).unwrap();
+        assert_eq!(matches!(model.laws.table, LawTable::Rough(_)), !hertz);
+        assert_eq!(matches!(model.laws.table, LawTable::Conical(_)), hertz);
+        let plain = bits(&model, 500, false, Simd::Portable);
+        for simd in Simd::all() {
+            assert!(bits(&model, 500, false, simd) == plain, "{simd:?}, hertz {hertz}");
         }
     }
 }

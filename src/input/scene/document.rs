@@ -121,18 +121,13 @@ impl Document {
     /// # Errors
     /// No `=`, a path through a value, an unreadable file.
     pub fn set_all(&mut self, assignments: &[String]) -> Result<(), SceneError> {
-        let files = |path: &str| path == include::KEY;
-        if assignments.iter().any(|a| a.split_once('=').is_some_and(|(path, _)| files(path.trim()))) {
+        if assignments.iter().any(|a| included_by(a).is_some()) {
             // Names are resolved again: their indices may differ in the new files.
-            let all: Vec<String> = self.given.iter().chain(assignments).cloned().collect();
-            let (of_files, others): (Vec<String>, Vec<String>) =
-                all.into_iter().partition(|a| a.split_once('=').is_some_and(|(path, _)| files(path.trim())));
-            self.overrides.clear();
-            self.given.clone_from(&of_files);
-            for assignment in &of_files {
-                let value = assignment.split_once('=').expect("seen above").1.trim();
-                self.overrides.push((include::KEY.into(), value.to_string()));
-            }
+            let all: Vec<String> = self.given.drain(..).chain(assignments.iter().cloned()).collect();
+            let others;
+            (self.given, others) = all.into_iter().partition(|a| included_by(a).is_some());
+            let values = self.given.iter().filter_map(|a| included_by(a));
+            self.overrides = values.map(|value| (include::KEY.into(), value.into())).collect();
             self.include()?;
             return self.set_all(&others);
         }
@@ -376,6 +371,12 @@ impl Document {
         }
         if span == (0..0) { None } else { self.line(&span) }
     }
+}
+
+/// Value of an override of `include`.
+fn included_by(assignment: &str) -> Option<&str> {
+    let (path, value) = assignment.split_once('=')?;
+    (path.trim() == include::KEY).then(|| value.trim())
 }
 
 /// Path with indices in place of names of tables; indices take precedence.

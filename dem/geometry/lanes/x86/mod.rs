@@ -19,12 +19,15 @@ use avx2::Avx2;
 use avx512::Avx512;
 use std::arch::x86_64::_mm_prefetch;
 
-/// Lane implementation.
+/// Lane implementation. Other crates cannot name those with instructions of their own: they come from
+/// [`Simd::best`] or [`Simd::all`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Simd {
     Portable,
+    #[non_exhaustive]
     Avx2,
     /// Two groups of four lanes.
+    #[non_exhaustive]
     Avx512,
 }
 
@@ -63,19 +66,13 @@ impl Simd {
     }
 }
 
-/// Runs a kernel; `simd` must come from [`Simd::best`] or be [`Simd::Portable`].
+/// Runs a kernel.
 #[inline]
 pub fn run<K: Kernel>(simd: Simd, kernel: K) -> K::Output {
-    match simd {
-        Simd::Portable => kernel.run::<Portable>(),
-        // SAFETY: `Simd::best` detected AVX2.
-        Simd::Avx2 => unsafe { with_avx2(kernel) },
-        // SAFETY: `Simd::best` detected AVX-512.
-        Simd::Avx512 => unsafe { with_avx512(kernel) },
-    }
+    if simd.any_law_only() { kernel.run::<Portable>() } else { run_native(simd, kernel) }
 }
 
-/// As [`run`], for instructions of this processor only.
+/// As [`run`], without [`Simd::Portable`].
 #[inline]
 pub fn run_native<K: Kernel>(simd: Simd, kernel: K) -> K::Output {
     match simd {
