@@ -67,6 +67,11 @@ fn heap_input(hertz: bool, clumps: bool) -> ModelInput {
 }
 
 fn bits(model: &Model, steps: usize, parallel: bool, simd: Simd) -> Vec<u64> {
+    bits_above(0.1, model, steps, parallel, simd)
+}
+
+/// `least`: dissipation that shows contacts [J].
+fn bits_above(least: f64, model: &Model, steps: usize, parallel: bool, simd: Simd) -> Vec<u64> {
     let mut state = State::new(model);
     let mut work = Work::new(model, &state);
     assert!(work.blocks.len() > 2);
@@ -74,7 +79,7 @@ fn bits(model: &Model, steps: usize, parallel: bool, simd: Simd) -> Vec<u64> {
     for _ in 0..steps {
         step(model, &mut state, &mut work, &NoSurface, &[]).unwrap();
     }
-    assert!(state.balance.dissipated() > 0.1);
+    assert!(state.balance.dissipated() > least, "{} J at {} s", state.balance.dissipated(), state.time);
     let at = |b| [state.position(b), state.velocity(b), state.spin(b)];
     let l = &state.balance;
     let damped = l.local_damping.angular.y + l.dissipated_local_damping;
@@ -107,7 +112,7 @@ fn all_lanes_give_the_same_bits() {
 #[test]
 fn loops_of_a_law_and_of_any_law_agree() {
     let rough = |m: Material| Material { asperity_friction: 0.4, asperity_pressure: 2e4, ..m };
-    let conical = |m: Material| Material { corner_strength: 3e5, corner_angle: 1.36, ..m };
+    let conical = |m: Material| Material { corner_strength: 1e6, corner_angle: 1.3, ..m };
     for hertz in [false, true] {
         let mut input = heap_input(hertz, true);
         input.materials[0] = if hertz { conical(input.materials[0]) } else { rough(input.materials[0]) };
@@ -115,9 +120,12 @@ fn loops_of_a_law_and_of_any_law_agree() {
         let model = Model::new(input).unwrap();
         assert_eq!(matches!(model.laws.table, LawTable::Rough(_)), !hertz);
         assert_eq!(matches!(model.laws.table, LawTable::Conical(_)), hertz);
-        let plain = bits(&model, 500, false, Simd::Portable);
+        // Corners that crush have no dashpot and a short step.
+        let (least, steps) = if hertz { (2e-5, 2000) } else { (0.1, 500) };
+        let run = |simd| bits_above(least, &model, steps, false, simd);
+        let plain = run(Simd::Portable);
         for simd in Simd::all() {
-            assert!(bits(&model, 500, false, simd) == plain, "{simd:?}, hertz {hertz}");
+            assert!(run(simd) == plain, "{simd:?}, hertz {hertz}");
         }
     }
 }
