@@ -113,6 +113,10 @@ struct Entry {
     highest: f64,
 }
 
+/// Column of a point and those around it: a support found early ends the search of the others near the top.
+const NEAREST_FIRST: [[isize; 2]; 9] =
+    [[0, 0], [-1, 0], [1, 0], [0, -1], [0, 1], [-1, -1], [-1, 1], [1, -1], [1, 1]];
+
 /// In columns at least as wide as the largest sphere.
 struct Heap {
     columns: Vec<Vec<Entry>>,
@@ -139,18 +143,20 @@ impl Heap {
     fn resting_height(&self, x: f64, y: f64, r: f64, give_up: f64) -> f64 {
         let [i, j] = self.column(x, y);
         let mut z = r;
-        for a in i.saturating_sub(1)..=(i + 1).min(self.count[0] - 1) {
-            for b in j.saturating_sub(1)..=(j + 1).min(self.count[1] - 1) {
-                for e in self.columns[a * self.count[1] + b].iter().rev() {
-                    // Earlier spheres of the column cannot support higher positions.
-                    if e.highest + r + self.largest <= z || z >= give_up {
-                        break;
-                    }
-                    let reach = r + e.radius;
-                    let rise = reach * reach - (x - e.centre[0]).powi(2) - (y - e.centre[1]).powi(2);
-                    if rise > 0.0 {
-                        z = z.max(e.centre[2] + rise.sqrt());
-                    }
+        for [a, b] in NEAREST_FIRST {
+            let column = i.checked_add_signed(a).zip(j.checked_add_signed(b));
+            let Some((a, b)) = column.filter(|(a, b)| *a < self.count[0] && *b < self.count[1]) else {
+                continue;
+            };
+            for e in self.columns[a * self.count[1] + b].iter().rev() {
+                // Earlier spheres of the column cannot support higher positions.
+                if e.highest + r + self.largest <= z || z >= give_up {
+                    break;
+                }
+                let reach = r + e.radius;
+                let rise = reach * reach - (x - e.centre[0]).powi(2) - (y - e.centre[1]).powi(2);
+                if rise > 0.0 {
+                    z = z.max(e.centre[2] + rise.sqrt());
                 }
             }
         }
