@@ -7,7 +7,7 @@ use trackbed::results::grains::GrainFile;
 use trackbed::results::lines::{Chains, Walls};
 use trackbed::results::solid::{self, Skin};
 use trackbed::run::check_checkpoint;
-use trackbed::scene::{Document, Scene};
+use trackbed::scene::Document;
 use trackbed::study::count_runs;
 use trackbed::write::hdf5;
 
@@ -110,9 +110,9 @@ pub fn scene(data: &[u8]) {
     let text = String::from_utf8_lossy(data).into_owned();
     let (text, set) = text.rsplit_once('\n').unwrap_or((&text, &text));
     let Ok(mut document) = Document::parse(Path::new("scene.toml"), text.to_string()) else { return };
-    drop(document.read::<Scene>());
+    drop(document.scene());
     if document.set(set).is_ok() {
-        drop(document.read::<Scene>());
+        drop(document.scene());
     }
     drop(document.error("solid.material.0.young", "a", "b").to_string());
 }

@@ -16,5 +16,6 @@ pub mod study;
 
 pub use trackbed_input::{model, plausible, scene};
 pub use trackbed_io::{columns, failure, guard, mesh_tools, message, read, results, write};
-pub use trackbed_post::{convert, preview, render, report, view};
+pub use trackbed_post::{convert, preview, render, view};
+pub use trackbed_report as report;
 pub use trackbed_run as run;

@@ -90,7 +90,7 @@ pub fn read(scene: &Path, set: &[String]) -> Result<(Document, Job), Failure> {
 /// # Errors
 /// Input errors; more than `memory` [bytes]; implausible values if `strict`.
 pub fn report(document: &Document, job: &Job, memory: Option<u64>, strict: bool) -> Result<Report, Failure> {
-    let mut findings = plausible::weigh(&document.read()?, job);
+    let mut findings = plausible::weigh(&document.scene()?, job);
     findings.extend(plausible::near_mode(job));
     if strict {
         plausible::refuse(document, &findings)?;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::output::{print, refuse_existing};
 use crate::cli::{MeshArgs, MeshFormat};
 use trackbed_input::model::solid::mesh_file;
-use trackbed_input::scene::{Document, Scene};
+use trackbed_input::scene::Document;
 use trackbed_io::failure::Failure;
 use trackbed_io::mesh_tools::{self, Problem};
 use trackbed_io::read::{MESH_ENDINGS, MeshFile, folder_files, mesh_files, read_mesh_file};
@@ -89,7 +89,7 @@ fn refuse_input(input: &Path, output: &Path) -> Result<(), Failure> {
     let mut read = vec![input.to_path_buf()];
     if is_scene(input) {
         let document = Document::open(input)?;
-        let scene: Scene = document.read()?;
+        let scene = document.scene()?;
         let named = scene.solid.iter().flat_map(|s| [&s.mesh, &s.nodes, &s.elements, &s.constraints]);
         read.extend(named.flatten().map(|file| document.resolve(file)));
     }
@@ -118,7 +118,7 @@ fn read(args: &MeshArgs) -> Result<MeshFile, Failure> {
         return Ok(file);
     }
     let document = Document::open(&args.input)?;
-    let scene: Scene = document.read()?;
+    let scene = document.scene()?;
     match &scene.solid {
         Some(solid) => mesh_file(&document, solid),
         None => Err(document.error("solid", "nothing", "a solid with a mesh").into()),

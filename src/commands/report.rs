@@ -4,7 +4,7 @@ use super::output::print;
 use crate::cli::ReportArgs;
 use crate::study;
 use trackbed_io::failure::Failure;
-use trackbed_post::report::{self, Options};
+use trackbed_report::{self as report, Options};
 
 /// Writes a report and prints its path.
 ///

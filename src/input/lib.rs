@@ -5,4 +5,4 @@
 
 pub mod model;
 pub mod plausible;
-pub mod scene;
+pub use trackbed_scene as scene;

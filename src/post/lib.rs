@@ -1,4 +1,4 @@
-//! Finished results as reports, pictures, pages of the viewer, and other formats; [`preview`] shows a scene before it runs.
+//! Finished results as pictures, pages of the viewer, and other formats; [`preview`] shows a scene before it runs.
 
 // Closed or full output must not stop a run.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
@@ -6,5 +6,4 @@
 pub mod convert;
 pub mod preview;
 pub mod render;
-pub mod report;
 pub mod view;

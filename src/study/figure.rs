@@ -5,7 +5,7 @@ use super::factor::Factor;
 use super::target::Target;
 use maud::{Markup, html};
 use trackbed_io::write::svg::{COLOURS, minus, round, text_width};
-use trackbed_post::report::plot::ruler::Ruler;
+use trackbed_report::plot::ruler::Ruler;
 
 const WIDTH: f64 = 560.0;
 const TOP: f64 = 34.0;

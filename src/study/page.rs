@@ -9,10 +9,10 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use trackbed_io::failure::Failure;
 use trackbed_io::read::source;
-use trackbed_post::report::page::{
+use trackbed_report::page::{
     Cell as PageCell, Section, facts_table, headed, joined, paragraph, plots, table,
 };
-use trackbed_post::report::{self, Options};
+use trackbed_report::{self as report, Options};
 
 /// Cases of smallest misfit on the page.
 const BEST: usize = 10;

@@ -9,7 +9,7 @@ use super::quantity::{self, Quantity};
 use super::target::{self, Target};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
-use trackbed_input::scene::{Document, Problem, Scene, SceneError};
+use trackbed_input::scene::{Document, Problem, SceneError};
 use trackbed_io::failure::Failure;
 
 const REFERENCE: &str = "reference";
@@ -315,7 +315,7 @@ pub fn of_setting(document: &Document, label: &str, fault: &impl std::fmt::Displ
 fn scene_has_cycles(scene: &Document, set: &[String]) -> Result<bool, SceneError> {
     let mut document = scene.clone();
     document.set_all(set)?;
-    let scene: Scene = document.read()?;
+    let scene = document.scene()?;
     Ok(scene.track.is_some_and(|track| track.load.is_some()))
 }
 

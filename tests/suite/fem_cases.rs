@@ -22,7 +22,7 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::PathBuf;
 use trackbed::model::Job;
-use trackbed::scene::{Document, Scene};
+use trackbed::scene::Document;
 use trackbed_fem::stress::at_natural;
 
 struct Case {
@@ -81,7 +81,7 @@ impl Case {
 
     fn stress_at(&self, wanted: &[(u32, [f64; 3])]) -> Vec<[f64; 6]> {
         let document = Document::open(&self.data.join("scene.toml")).unwrap();
-        let job = Job::new(&document, &document.read::<Scene>().unwrap()).unwrap();
+        let job = Job::new(&document, &document.scene().unwrap()).unwrap();
         let model = job.solid.unwrap().model;
         let moved = self.displacement();
         let u: Vec<f64> = model.mesh().node_ids.iter().flat_map(|id| moved[id]).collect();

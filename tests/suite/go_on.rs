@@ -157,10 +157,10 @@ fn places(out: &Path) -> Vec<f64> {
 fn grain_kinds_restart_bitwise() {
     for (name, grains) in kinds() {
         let folder = Folder::new(&format!("from_{name}"));
-        let count = if name == "bonded" { 8 } else { 30 };
+        let (count, step) = if name == "bonded" { (8, "5 us") } else { (30, "10 us") };
         let packing = name != "bonded";
         let rest =
-            format!("[time]\ngrain_step = \"2 us\"\nend = 1\n[output]\nframes = 1\npacking = {packing}\n");
+            format!("[time]\ngrain_step = \"{step}\"\nend = 1\n[output]\nframes = 1\npacking = {packing}\n");
         let scene = folder.write("scene.toml", &shaft(&grains, &rest, true));
         let far = "[[walls]]\nkind = \"plane\"\npoint = [0.0, 0.0, -40.0]\nnormal = [0.0, 0.0, 1.0]\nmaterial = \"stone\"\n";
         let next = folder.write("next.toml", &shaft(&grains, &format!("{rest}{far}"), true));

@@ -5,12 +5,12 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use trackbed::model::Job;
 use trackbed::plausible::{Finding, near_mode, weigh};
-use trackbed::scene::{Document, Scene};
+use trackbed::scene::Document;
 
 fn found(scene: &str, set: &[&str]) -> Vec<Finding> {
     let mut document = Document::open(&repository().join(scene)).unwrap();
     set.iter().for_each(|s| document.set(s).unwrap());
-    let parsed: Scene = document.read().unwrap_or_else(|e| panic!("{set:?}: {e}"));
+    let parsed = document.scene().unwrap_or_else(|e| panic!("{set:?}: {e}"));
     let job = Job::new(&document, &parsed).unwrap_or_else(|e| panic!("{set:?}: {e}"));
     weigh(&parsed, &job).into_iter().chain(near_mode(&job)).collect()
 }

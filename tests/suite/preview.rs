@@ -6,7 +6,6 @@ use super::support::{Folder, repository, trackbed};
 use super::view::Server;
 use std::time::{Duration, Instant};
 use trackbed::preview::{KINDS, Preview, Source};
-use trackbed::scene::Scene;
 
 #[test]
 fn shipped_scenes_have_all_objects() {
@@ -23,7 +22,7 @@ fn shipped_scenes_have_all_objects() {
             resolved.as_secs_f64(),
             (begun.elapsed() - resolved).as_secs_f64()
         );
-        let scene: Scene = document.read().unwrap();
+        let scene = document.scene().unwrap();
         let count = |word: &str| preview.of(word).count();
         assert_eq!(count("grains"), scene.grains.len(), "{name}");
         assert_eq!(count("walls"), if scene.grains.is_empty() { 0 } else { scene.walls.len() }, "{name}");

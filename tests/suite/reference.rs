@@ -19,12 +19,12 @@ fn page_agrees_with_comments() {
         let line = number + 1;
         assert_eq!(
             found, expected,
-            "docs/scene.md:{line} differs from the comments in src/input/scene; renew it: {RENEW}"
+            "docs/scene.md:{line} differs from the comments in src/scene; renew it: {RENEW}"
         );
     }
     assert!(
         page == made,
-        "docs/scene.md is longer or shorter than the comments in src/input/scene make it; renew it: {RENEW}"
+        "docs/scene.md is longer or shorter than the comments in src/scene make it; renew it: {RENEW}"
     );
 }
 

@@ -78,7 +78,7 @@ fn frustum(radii: [f64; 2], height: f64, caps: [bool; 2]) -> WallShape {
 
 #[test]
 fn bounces_off_walls_keep_the_energy() {
-    bounces(4, 2);
+    bounces(3, 2);
 }
 
 #[test]

@@ -124,8 +124,8 @@ fn as_polyhedra_with_the_same_faces() {
     for (name, shape) in walls {
         let mut random = Random::new(77);
         let (mut worst, mut met) = (0.0_f64, 0);
-        for k in 0..3 {
-            let law = if k == 2 { hertz } else { material() };
+        for k in 0..2 {
+            let law = if k == 1 { hertz } else { material() };
             let mut throw = Throw::at_random(&mut random, name == "pile");
             match name {
                 // From inside.
@@ -169,8 +169,8 @@ fn as_polyhedra_with_the_same_faces() {
             let turn = (w - grains.state.spin(0)).norm() / throw.spin.norm();
             worst = worst.max(off).max(turn);
         }
-        println!("{name}: {met} collisions of 3, worst {worst:.1e}");
-        assert!(met == 3 && worst < 1e-6, "{name}: {met} collisions, {worst:e}");
+        println!("{name}: {met} collisions of 2, worst {worst:.1e}");
+        assert!(met == 2 && worst < 1e-6, "{name}: {met} collisions, {worst:e}");
     }
 }
 

@@ -14,9 +14,9 @@ const LONGEST: Duration = Duration::from_secs(2);
 /// # Errors
 /// Unknown or missing keys, wrong types or units.
 pub fn read_scene(document: &Document) -> Result<Scene, Failure> {
-    let again = |rest: &Document| Ok(rest.read::<Scene>().map(drop)?);
+    let again = |rest: &Document| Ok(rest.scene().map(drop)?);
     // Key types are independent.
-    document.read().map_err(|first| all(document, first.into(), again, of_form, |_, _| true))
+    document.scene().map_err(|first| all(document, first.into(), again, of_form, |_, _| true))
 }
 
 /// Resolves a scene.
@@ -24,7 +24,7 @@ pub fn read_scene(document: &Document) -> Result<Scene, Failure> {
 /// # Errors
 /// All independent input errors; see [`Job::new`].
 pub fn resolve(document: &Document, scene: &Scene) -> Result<Job, Failure> {
-    let again = |rest: &Document| Job::new(rest, &rest.read()?).map(drop);
+    let again = |rest: &Document| Job::new(rest, &rest.scene()?).map(drop);
     Job::new(document, scene).map_err(|first| all(document, first, again, of_value, apart))
 }
 

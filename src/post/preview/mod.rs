@@ -49,7 +49,7 @@ impl Preview {
     /// # Errors
     /// Input errors.
     pub fn new(document: &Document, job: &Job) -> Result<Preview, Failure> {
-        let scene: Scene = document.read()?;
+        let scene = document.scene()?;
         let none = [[0.0; 3]; 2];
         let mut context = Context { document, scene: &scene, job, bounds: none };
         let (mut items, mut bounds) = (Vec::new(), None);

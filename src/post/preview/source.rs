@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use trackbed_input::model::{self, Job};
-use trackbed_input::scene::{Document, Scene};
+use trackbed_input::scene::Document;
 use trackbed_io::failure::Failure;
 use trackbed_io::results::series;
 use trackbed_run::{Hash, named_files};
@@ -67,7 +67,7 @@ impl Source {
         let mut files = vec![self.file.clone()];
         if let Ok(document) = self.document() {
             files.extend(document.included().map(|file| document.resolve(file)));
-            if let Ok(scene) = document.read::<Scene>() {
+            if let Ok(scene) = document.scene() {
                 files.extend(named_files(&document, &scene).iter().map(|file| document.resolve(file)));
             }
         }

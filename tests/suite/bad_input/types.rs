@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use trackbed::scene::{Document, Scene};
+use trackbed::scene::Document;
 
 /// Parser and source terms that must not appear.
 const TERMS: [&str; 14] = [
@@ -72,7 +72,7 @@ fn wrong_types_give_plain_messages() {
     for file in &files {
         let text = std::fs::read_to_string(file).unwrap();
         let Ok(document) = Document::parse(file, text.clone()) else { continue };
-        if document.read::<Scene>().is_err() {
+        if document.scene().is_err() {
             continue;
         }
         let mut keys = BTreeSet::new();
@@ -87,7 +87,7 @@ fn wrong_types_give_plain_messages() {
             for value in VALUES {
                 let mut changed = Document::parse(file, text.clone()).unwrap();
                 let set = changed.set(&format!("{key}={value}"));
-                let Err(error) = set.and_then(|()| changed.read::<Scene>()) else { continue };
+                let Err(error) = set.and_then(|()| changed.scene()) else { continue };
                 refused += 1;
                 let sentence = format!("{key}={value}: {}", error.problem);
                 if TERMS.iter().any(|term| sentence.contains(term)) {

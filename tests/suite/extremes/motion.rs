@@ -44,7 +44,7 @@ fn gravities() -> Row {
             .replace("title", &format!("gravity = [0, 0, -{gravity:?}]\ntitle"))
             + &ball("ball", [0.0, 0.0, 0.02], 0.01, [0.0; 3])
             + &floor()
-            + &time(10.0 * (0.02 / gravity).sqrt(), 200);
+            + &time(4.0 * (0.02 / gravity).sqrt(), 200);
         Case::run(&text, &[])
     };
     let errors = [1e-6, 1.0, 1e3]

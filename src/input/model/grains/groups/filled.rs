@@ -1,7 +1,7 @@
 //! Grains of random sizes, stacked in a box.
 
 use super::part::GroupsPart;
-use super::shapes::{Sampled, drawn, shapes, unit_volumes};
+use super::shapes::{Sampled, deal, drawn, shapes, unit_volumes};
 use super::sizes::SizeSource;
 use super::target::{Amount, HIGHEST, Site, amount, bed};
 use crate::scene::grains::{FillBox, Grains};
@@ -13,6 +13,10 @@ use trackbed_io::failure::Failure;
 
 /// Fill ratio of bounding spheres in a loose heap (`trackbed_dem::insert::place`).
 const LOOSE: f64 = 0.3;
+/// Sizes drawn first, so that an absurd number of grains is rejected before it is drawn.
+const SAMPLE: usize = 10_000;
+/// Heights of the sample above this multiple of the limit are rejected: the largest sizes of a wide gradation are rare.
+const BEYOND: f64 = 10.0;
 
 pub(super) fn filled(
     (scene, group): (&Table<Scene>, &Table<Grains>),
@@ -26,13 +30,23 @@ pub(super) fn filled(
     let units = unit_volumes(group, part, first, &unit_scale)?;
     let source = SizeSource::of(group)?;
     let how_much = Amount::of(group, &site, (&source, &units), density)?;
+    let high = [fill.high[0].si, fill.high[1].si];
+    let mut low = vector(&fill.low);
+    let area = (high[0] - low[0]) * (high[1] - low[1]);
+    let sample = source.sample(how_much.count.min(SAMPLE), group.seed);
+    let bounding: Vec<f64> = part.shapes[first..]
+        .iter()
+        .zip(&unit_scale)
+        .map(|(s, u)| u * s.query(|s| s.bounding_radius()))
+        .collect();
+    let radii = sample.iter().zip(deal(&sample, bounding.len())).map(|(size, d)| size * bounding[d]);
+    check_height((group, key), (how_much.count, mean_volume(radii)), area, BEYOND * HIGHEST)?;
+
     let grains: Vec<Sampled> = drawn(group, part, source, how_much.count, (first, &unit_scale));
     let radii: Vec<f64> =
         grains.iter().map(|b| b.scale * part.shapes[b.shape].query(|s| s.bounding_radius())).collect();
+    check_height((group, key), (radii.len(), mean_volume(radii.iter().copied())), area, HIGHEST)?;
 
-    let mut low = vector(&fill.low);
-    let high = [fill.high[0].si, fill.high[1].si];
-    check_height((group, key), &radii, (high[0] - low[0]) * (high[1] - low[1]))?;
     low[2] = low[2].max(top_of(part, low, high));
     let placed = place::place_loose(low, high, &radii, group.seed)
         .map_err(|e| group.error("fill", e.to_string(), "a box that holds the grains"))?;
@@ -49,13 +63,24 @@ pub(super) fn filled(
     Ok(())
 }
 
-fn check_height((group, key): (&Table<Grains>, &str), radii: &[f64], area: f64) -> Result<(), Failure> {
-    let volume: f64 = radii.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).sum();
-    let height = volume / (LOOSE * area);
-    if height <= HIGHEST || !height.is_finite() {
+/// Mean volume of spheres [m³].
+fn mean_volume(radii: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = radii.len().max(1) as f64;
+    radii.map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).sum::<f64>() / count
+}
+
+/// `limit` [m] on the height of `count` bounding spheres of a mean volume [m³] on an area [m²].
+fn check_height(
+    (group, key): (&Table<Grains>, &str),
+    (count, volume): (usize, f64),
+    area: f64,
+    limit: f64,
+) -> Result<(), Failure> {
+    let height = count as f64 * volume / (LOOSE * area);
+    if height <= limit || !height.is_finite() {
         return Ok(());
     }
-    let found = format!("{} grains, a heap of about {height:.0} m on the plan of `fill`", radii.len());
+    let found = format!("{count} grains, a heap of about {height:.0} m on the plan of `fill`");
     Err(group.error(key, found, format!("a heap of at most {HIGHEST:.0} m")).into())
 }
 

@@ -1,7 +1,7 @@
 //! Scene tables of supports and absorbing boundaries.
 
-use crate::scene::history::History;
-use crate::scene::units::{Length, Quantity};
+use crate::history::History;
+use crate::units::{Length, Quantity};
 use schemars::JsonSchema;
 use serde::Deserialize;
 

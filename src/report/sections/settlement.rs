@@ -2,10 +2,10 @@
 
 use super::laws::Law;
 use super::overlay::{facts, one};
-use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, columns, headed, joined, paragraph, plots, table};
-use crate::report::plot::{Curve, Look, Plot, Side};
-use crate::report::quantity::{exact, number};
+use crate::data::RunData;
+use crate::page::{Cell, Section, columns, headed, joined, paragraph, plots, table};
+use crate::plot::{Curve, Look, Plot, Side};
+use crate::quantity::{exact, number};
 use maud::{Markup, html};
 use serde_json::Value;
 use trackbed_io::columns::{Definition, cycles, history};

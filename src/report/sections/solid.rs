@@ -1,9 +1,9 @@
 //! Solid: displacement, equilibrium, plasticity, safety, modes.
 
 use super::overlay::{dominant, facts, one, overlay};
-use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, columns, headed, joined, paragraph, plots, table};
-use crate::report::plot::{Plot, Side};
+use crate::data::RunData;
+use crate::page::{Cell, Section, columns, headed, joined, paragraph, plots, table};
+use crate::plot::{Plot, Side};
 use maud::Markup;
 use trackbed_input::scene::history::TimeFunction;
 use trackbed_io::columns::{Definition, gauss, history, modes, safety};
@@ -171,7 +171,7 @@ pub fn safety(runs: &[RunData]) -> Option<Section> {
             let number = |key: &str, unit| Cell::of(t[key].as_f64(), unit);
             let stands =
                 Cell::text(if t["stands"].as_bool().unwrap_or(false) { "stable" } else { "unstable" });
-            let name = crate::report::quantity::number(t["factor"].as_f64().unwrap_or(0.0));
+            let name = crate::quantity::number(t["factor"].as_f64().unwrap_or(0.0));
             let name = if runs.len() > 1 { format!("{}: {name}", run.label) } else { name };
             let cells = vec![
                 stands,

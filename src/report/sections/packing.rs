@@ -1,9 +1,9 @@
 //! Final packing: coordination, porosity, stress; growth and compaction.
 
 use super::overlay::{facts, one};
-use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, columns, headed, joined, plots, table};
-use crate::report::plot::{Plot, Side};
+use crate::data::RunData;
+use crate::page::{Cell, Section, columns, headed, joined, plots, table};
+use crate::plot::{Plot, Side};
 use maud::Markup;
 use serde_json::Value;
 use trackbed_io::columns::radial;

@@ -1,7 +1,10 @@
 //! Types of a scene file (TOML, SI units), exactly as written; unknown keys are rejected.
 //!
-//! [`crate::model`] resolves them. Numbers may have units (`"20 MPa"`). `[solid]` gives a FEM model,
+//! The crate trackbed-input builds models of them. Numbers may have units (`"20 MPa"`). `[solid]` gives a FEM model,
 //! `[[grains]]` a DEM model, both with `[coupling]` the coupled one.
+
+// Closed or full output must not stop a run.
+#![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
 pub mod after;
 pub mod bonds;
@@ -115,6 +118,16 @@ pub struct Scene {
 
 fn earth() -> [Quantity<Acceleration>; 3] {
     [Quantity::new(0.0), Quantity::new(0.0), Quantity::new(-9.81)]
+}
+
+impl Document {
+    /// Deserialises a scene: compiled here once, not in every crate that reads scenes.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn scene(&self) -> Result<Scene, SceneError> {
+        self.read()
+    }
 }
 
 /// Time steps and duration.

@@ -1,8 +1,8 @@
 //! Status, checks and warnings of the runs.
 
-use crate::report::data::{RunData, State};
-use crate::report::page::{Cell, Section, joined, table};
-use crate::report::quantity::with_unit;
+use crate::data::{RunData, State};
+use crate::page::{Cell, Section, joined, table};
+use crate::quantity::with_unit;
 use maud::{Markup, html};
 use serde_json::Value;
 use trackbed_io::columns::history;

@@ -1,9 +1,9 @@
 //! Inflow and outflow: inventory and mass flow.
 
 use super::overlay::{facts, one, overlay};
-use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, joined, plots, table};
-use crate::report::plot::{Plot, Side};
+use crate::data::RunData;
+use crate::page::{Cell, Section, joined, plots, table};
+use crate::plot::{Plot, Side};
 use trackbed_io::columns::history;
 
 const STRETCHES: usize = 40;

@@ -1,9 +1,9 @@
 //! Sieve curves, logarithmic in size.
 
 use super::overlay::overlay;
-use crate::report::data::RunData;
-use crate::report::page::{Section, columns, joined, plots};
-use crate::report::plot::{Plot, Side};
+use crate::data::RunData;
+use crate::page::{Section, columns, joined, plots};
+use crate::plot::{Plot, Side};
 use serde_json::Value;
 use trackbed_io::columns::{Definition, gradation};
 

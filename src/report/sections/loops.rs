@@ -1,9 +1,9 @@
 //! Load–deflection loops; cyclic stiffness, modulus, damping.
 
 use super::overlay::one;
-use crate::report::data::RunData;
-use crate::report::page::{Section, joined, paragraph, plots};
-use crate::report::plot::{Curve, Look, Plot, Side};
+use crate::data::RunData;
+use crate::page::{Section, joined, paragraph, plots};
+use crate::plot::{Curve, Look, Plot, Side};
 use maud::Markup;
 use std::f64::consts::PI;
 use trackbed_io::columns::{Definition, cycles, history};

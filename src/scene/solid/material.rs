@@ -1,7 +1,7 @@
 //! Scene tables of solid materials and their constitutive laws.
 
-use crate::scene::units::{Angle, Density, Quantity, Stress};
-use crate::scene::{Problem, setting};
+use crate::units::{Angle, Density, Quantity, Stress};
+use crate::{Problem, setting};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use trackbed_fem::material::{

@@ -1,9 +1,9 @@
 //! Balances of energy, momentum and interface.
 
 use super::overlay::{facts, one, overlay};
-use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, columns, joined, plots};
-use crate::report::plot::{Plot, Side};
+use crate::data::RunData;
+use crate::page::{Cell, Section, columns, joined, plots};
+use crate::plot::{Plot, Side};
 use maud::{Markup, html};
 use serde_json::Value;
 use trackbed_io::columns::{Definition, history};

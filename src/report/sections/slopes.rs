@@ -1,9 +1,9 @@
 //! Slides and rock specimens.
 
 use super::overlay::{facts, one, overlay};
-use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, joined, plots};
-use crate::report::plot::{Plot, Side};
+use crate::data::RunData;
+use crate::page::{Cell, Section, joined, plots};
+use crate::plot::{Plot, Side};
 use trackbed_io::columns::{Definition, history};
 
 /// Formats the runout.

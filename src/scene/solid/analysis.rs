@@ -1,6 +1,6 @@
 //! Scene tables of the FEM analysis.
 
-use crate::scene::units::{Density, Frequency, Length, Quantity, Rate, Stress, Time};
+use crate::units::{Density, Frequency, Length, Quantity, Rate, Stress, Time};
 use schemars::JsonSchema;
 use serde::Deserialize;
 

@@ -1,8 +1,8 @@
 //! Steps, windows, coupling, and stage times.
 
 use super::overlay::facts;
-use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, table};
+use crate::data::RunData;
+use crate::page::{Cell, Section, table};
 use maud::{Markup, html};
 use serde_json::Value;
 

@@ -1,9 +1,9 @@
 //! Formation pressure, sleepers, lateral push.
 
 use super::overlay::{facts, one, overlay};
-use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, joined, plots, table};
-use crate::report::plot::{Plot, Side};
+use crate::data::RunData;
+use crate::page::{Cell, Section, joined, plots, table};
+use crate::plot::{Plot, Side};
 use trackbed_io::columns::{Definition, cycles, history, push};
 
 /// Formats formation pressure and force on the solid.

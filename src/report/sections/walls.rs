@@ -1,9 +1,9 @@
 //! Recorded walls: forces; stress–strain of servo tests.
 
 use super::overlay::{dominant, overlay};
-use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, joined, paragraph, plots, table};
-use crate::report::plot::{Plot, Side};
+use crate::data::RunData;
+use crate::page::{Cell, Section, joined, paragraph, plots, table};
+use crate::plot::{Plot, Side};
 use trackbed_input::scene::walls::{Wall, WallKind};
 use trackbed_io::columns::{Definition, history};
 use trackbed_io::results::tables::Table;

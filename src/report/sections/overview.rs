@@ -2,8 +2,8 @@
 
 use super::compare::shown;
 use super::overlay::facts;
-use crate::report::data::RunData;
-use crate::report::page::{self, Cell, Section, headed, joined, paragraph, table};
+use crate::data::RunData;
+use crate::page::{self, Cell, Section, headed, joined, paragraph, table};
 use maud::{Markup, html};
 use std::collections::BTreeSet;
 use std::path::Path;

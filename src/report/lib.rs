@@ -1,5 +1,8 @@
 //! Report of runs, from results directories only.
 
+// Closed or full output must not stop a run.
+#![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
+
 mod data;
 pub mod page;
 pub mod plot;

@@ -240,7 +240,7 @@ impl<N: Number> Number for Option<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::units::Length;
+    use crate::units::Length;
 
     struct Scene {
         walls: Vec<Wall>,

@@ -1,6 +1,6 @@
 //! Scene tables of solid meshes.
 
-use crate::scene::units::{Length, Quantity};
+use crate::units::{Length, Quantity};
 use schemars::JsonSchema;
 use serde::Deserialize;
 

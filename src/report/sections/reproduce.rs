@@ -1,7 +1,7 @@
 //! Command, scene, overrides and sources of the runs.
 
-use crate::report::data::RunData;
-use crate::report::page::{self, Section, paragraph};
+use crate::data::RunData;
+use crate::page::{self, Section, paragraph};
 use maud::{Markup, html};
 use serde_json::Value;
 use std::collections::BTreeSet;

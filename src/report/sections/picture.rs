@@ -1,10 +1,10 @@
 //! Pictures of the last frames.
 
-use crate::render;
-use crate::report::data::{RunData, State};
-use crate::report::page::{Section, joined, paragraph, plots};
+use crate::data::{RunData, State};
+use crate::page::{Section, joined, paragraph, plots};
 use base64::prelude::{BASE64_STANDARD, Engine};
 use maud::{Markup, PreEscaped, html};
+use trackbed_post::render;
 
 /// Most pictures of a page.
 const MOST: usize = 4;

@@ -1,8 +1,8 @@
 //! Comparison of runs: different keys and results.
 
 use super::overlay::{Fact, facts};
-use crate::report::data::RunData;
-use crate::report::page::{Cell, Section, headed, joined, paragraph, table};
+use crate::data::RunData;
+use crate::page::{Cell, Section, headed, joined, paragraph, table};
 use maud::Markup;
 use std::collections::BTreeSet;
 use trackbed_io::columns::{Definition, Kind, Name, cycles, history};

@@ -1,9 +1,9 @@
 //! Loads on structures, and their motion.
 
 use super::overlay::overlay;
-use crate::report::data::RunData;
-use crate::report::page::{Section, joined, paragraph, plots};
-use crate::report::plot::{Plot, Side};
+use crate::data::RunData;
+use crate::page::{Section, joined, paragraph, plots};
+use crate::plot::{Plot, Side};
 use std::f64::consts::TAU;
 use trackbed_io::columns::{Definition, Name, history};
 use trackbed_io::results::tables::Table;

@@ -1,8 +1,8 @@
 //! Shared curves and tables of sections.
 
-use crate::report::data::RunData;
-use crate::report::page::{Cell, facts_table};
-use crate::report::plot::{Curve, Look};
+use crate::data::RunData;
+use crate::page::{Cell, facts_table};
+use crate::plot::{Curve, Look};
 use maud::Markup;
 use trackbed_io::columns::Name;
 
