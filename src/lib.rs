@@ -11,11 +11,10 @@ pub mod cli;
 pub mod commands;
 pub mod program;
 pub mod start;
-pub mod stone_tools;
 pub mod study;
 
 pub use trackbed_input::{model, plausible, scene};
-pub use trackbed_io::{columns, failure, guard, mesh_tools, message, read, results, write};
+pub use trackbed_io::{columns, failure, guard, mesh_tools, message, read, results, stone_tools, write};
 pub use trackbed_post::{convert, preview, render, view};
 pub use trackbed_report as report;
 pub use trackbed_run as run;

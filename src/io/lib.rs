@@ -14,5 +14,6 @@ pub mod replaced;
 pub mod results;
 #[doc(hidden)]
 pub mod scratch;
+pub mod stone_tools;
 pub mod system;
 pub mod write;
