@@ -4,6 +4,9 @@ import { check as named, expect } from './expect.mjs';
 
 const bytesOf = async (download) => fs.readFileSync(await download.path());
 
+/** Waits until something of this kind is picked and its history is there; an earlier pick stays until then. */
+const pickedOf = (page, kind) => page.waitForFunction((k) => trackbed.state.picked?.kind === k && trackbed.state.picked.history, kind);
+
 /** All checks, or those in `only`. */
 export async function onTrack(view, only) {
   const { page } = view;
@@ -50,7 +53,7 @@ export async function onTrack(view, only) {
     await view.select('view-side', 'oblique');
     const seen = await visibleStone(view);
     await view.clickAt(seen.at);
-    await page.waitForFunction(() => trackbed.state.picked?.history);
+    await pickedOf(page, 'grain');
     const { picked } = await view.state();
     expect(picked.kind === 'grain' && picked.id === seen.id, `${picked.title} in place of stone ${seen.id}`);
     const text = await page.locator('#picked').innerText();
@@ -86,7 +89,7 @@ export async function onTrack(view, only) {
     });
     expect(node, 'no node is seen');
     await view.clickAt(node.at);
-    await page.waitForFunction(() => trackbed.state.picked?.history);
+    await pickedOf(page, 'node');
     const { picked, pickedQuantity: quantity } = await view.state();
     expect(picked.kind === 'node' && picked.id === node.id, `${picked.title} in place of ${node.id}`);
     expect(/stress/.test(quantity), `curve of ${quantity} in place of the field of the picture`);
