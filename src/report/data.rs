@@ -88,7 +88,7 @@ impl RunData {
             label: dir.file_name().map_or_else(|| dir.display(), |n| Path::new(n).display()).to_string(),
             dir: dir.to_path_buf(),
             keys: document.as_ref().map(Document::keys).unwrap_or_default(),
-            scene: document.as_ref().and_then(|d| d.read().ok()),
+            scene: document.as_ref().and_then(|d| d.scene().ok()),
             summary,
             file,
             tables,

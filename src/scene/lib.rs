@@ -192,6 +192,18 @@ pub struct Probe {
     pub region: Option<[[Quantity<Length>; 3]; 2]>,
 }
 
+impl Probe {
+    /// Name and length [m] of a line, if the probe is one; its points are `<name>_1`, ….
+    pub fn named_line(&self) -> Option<(&str, f64)> {
+        let [from, to] = self.line?;
+        let length = (0..3).map(|d| (to[d].si - from[d].si).powi(2)).sum::<f64>().sqrt();
+        Some((self.name.as_deref().unwrap_or(LINE), length))
+    }
+}
+
+/// Default name of a line.
+pub const LINE: &str = "line";
+
 /// Field of the solid at a node or point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

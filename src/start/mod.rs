@@ -95,6 +95,13 @@ pub const TEMPLATES: &[Template] = &[
     template!("servo", "grains pressed by a plate that holds its pressure", "grains", "servo.toml", []),
     template!("footing", "bearing capacity of a strip footing (FEM only)", "solid", "footing.toml", []),
     template!("slope", "factor of safety of a slope (FEM only)", "solid", "slope.toml", []),
+    template!(
+        "axle",
+        "an axle along an embankment, absorbing base and ends (FEM only)",
+        "solid",
+        "moving_load.toml",
+        []
+    ),
     template!("triaxial", "drained triaxial test of clay (FEM only)", "solid", "triaxial_drained.toml", []),
     template!(
         "rock",

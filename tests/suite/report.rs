@@ -320,6 +320,27 @@ fn solid_with_factor_of_safety() {
 }
 
 #[test]
+fn line_probes_are_profiles() {
+    let folder = Folder::new("report_line");
+    let set = ["output.frames=1", "probe.3.points=4"];
+    let (page, _) = reported(&folder, "inputs/solid/moving_load.toml", &set);
+    page.has(&["solid", "profiles"]);
+    page.contains("Vertical displacement along lines");
+    page.contains("crest, largest in time");
+    assert!(!page.text.contains("crest_1"), "points of lines have no curves in time");
+    let history = Table::read(&folder.join("out/history.csv"));
+    let columns: Vec<Vec<f64>> = (1..=4).map(|k| history.column(&format!("crest_{k}_u_z"))).collect();
+    let time = history.column("time");
+    let row = (0..time.len())
+        .max_by(|&a, &b| {
+            let size = |row: usize| columns.iter().fold(0.0_f64, |m, c| m.max(c[row].abs()));
+            size(a).total_cmp(&size(b))
+        })
+        .unwrap();
+    page.contains(&format!("crest, at {} ms", (1e3 * time[row]).round()));
+}
+
+#[test]
 fn grains_alone() {
     let folder = Folder::new("report_grains");
     let (page, summary) = reported(

@@ -42,4 +42,36 @@ export async function onSolid(browser, program, dir, faults) {
   });
   await view.page.context().close();
   await server.stop();
+  await onLine(browser, program, dir, faults);
+}
+
+/** Profile along a line probe. */
+async function onLine(browser, program, dir, faults) {
+  const out = path.join(dir, 'axle');
+  const scene = fileURLToPath(new URL('../../inputs/solid/moving_load.toml', import.meta.url));
+  execFileSync(program, ['run', scene, '--out', out, '--quiet', '--set', 'output.frames=6']);
+  const server = await serve(program, out);
+  const view = new View(await open(browser, server.address, faults));
+  await check('profile', 'profile along a line probe follows the frame', async () => {
+    const names = await view.page.locator('#history-quantity option').allInnerTexts();
+    expect(names.includes('along crest: u_z [m]') && !names.some((name) => /^crest_\d/.test(name)), names.join());
+    await view.page.locator('#history-quantity').selectOption('along crest: u_z [m]');
+    const lowest = [];
+    for (const frame of [2, 4]) {
+      await view.set({ frame });
+      lowest.push(await view.run(() => {
+        const { histories, state } = trackbed;
+        const row = histories.time.findLastIndex((t) => t <= state.time * (1 + 1e-6));
+        const { x, y } = histories.historyAt(state.historyQuantity, row, state.time);
+        return x[y.indexOf(Math.min(...y))];
+      }));
+    }
+    // The axle runs at 50 m/s; frames are 0.06 s apart.
+    expect(Math.abs(lowest[1] - lowest[0] - 6) <= 1, `deepest at ${lowest}`);
+    const { labels } = await view.run(() => trackbed.histories.marks.history);
+    expect(labels.join() === 'distance [m],crest [mm]' || /crest \[.m\]/.test(labels[1]), labels.join());
+    return `${names.length} quantities, deepest at ${lowest.join(' and ')} m`;
+  });
+  await view.page.context().close();
+  await server.stop();
 }

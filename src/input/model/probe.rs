@@ -5,7 +5,7 @@ mod solid;
 use super::grains::GrainsPart;
 use super::solid::{SolidPart, find_node};
 use crate::scene::units::vector;
-use crate::scene::{Probe, Scene, SceneError, Table};
+use crate::scene::{LINE, Probe, Scene, SceneError, Table};
 pub use solid::PointProbe;
 use trackbed_dem::measure::BoxRegion;
 use trackbed_fem::samples::{BoxPoints, Samples};
@@ -92,7 +92,7 @@ fn of_solid(table: &Table<Probe>, part: &SolidPart) -> Result<(String, Observed)
         return Ok(("box".into(), Observed::Volume(solid::volume(table, part)?)));
     }
     if table.line.is_some() {
-        return Ok(("line".into(), Observed::Point(solid::line(table, part)?)));
+        return Ok((LINE.into(), Observed::Point(solid::line(table, part)?)));
     }
     if let Some(fields) = &table.fields {
         let (name, point) = solid::point(table, part, fields)?;

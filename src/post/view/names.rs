@@ -1,50 +1,49 @@
-//! Names of groups and materials, from the scene text in `run.json`.
+//! Names of groups, materials and line probes, from the scene in `run.json`.
 
-use std::fs;
 use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
-use trackbed_io::results::series;
+use trackbed_input::scene::Scene;
+use trackbed_run::RunFile;
 
-/// Returns the groups with their contact materials, in order, and the solid materials by id.
+/// Returns groups with their contact materials, in order; solid materials by id; line probes with their lengths [m].
 ///
-/// Included files are not read: their groups follow the groups of the scene.
-pub fn of_run(dir: &Path) -> [Value; 2] {
-    let bytes = series::own(dir, "run.json").and_then(|file| fs::read(file).ok());
-    let run: Value = bytes.and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default();
-    of_scene(run["text"].as_str().unwrap_or_default())
+/// Empty where the scene is not understood.
+pub fn of_run(dir: &Path) -> [Value; 3] {
+    let document = RunFile::read(dir).and_then(|file| file.document());
+    of_scene(document.and_then(|document| document.scene().ok()))
 }
 
-fn of_scene(text: &str) -> [Value; 2] {
-    let scene: toml::Table = text.parse().unwrap_or_default();
-    let list = |table: Option<&toml::Value>| table.and_then(|t| t.as_array()).cloned().unwrap_or_default();
-    let name = |of: &toml::Value, key: &str| of.get(key).and_then(|v| v.as_str()).map(String::from);
-    let groups = list(scene.get("grains"));
-    let groups = groups.iter().map(|g| json!({ "name": name(g, "name"), "material": name(g, "material") }));
-    let solids = list(scene.get("solid").and_then(|solid| solid.get("material")));
-    let materials: Map<String, Value> = solids
-        .iter()
-        .filter_map(|m| Some((m.get("id")?.as_integer()?.to_string(), json!(name(m, "name")?))))
-        .collect();
-    [groups.collect(), materials.into()]
+fn of_scene(scene: Option<Scene>) -> [Value; 3] {
+    let Some(scene) = scene else { return [json!([]), json!({}), json!([])] };
+    let groups = scene.grains.iter().map(|g| json!({ "name": g.name, "material": g.material }));
+    let solids = scene.solid.iter().flat_map(|solid| &solid.material);
+    let materials: Map<String, Value> =
+        solids.filter(|m| !m.name.is_empty()).map(|m| (m.id.to_string(), json!(m.name))).collect();
+    let lines = scene.probe.iter().filter_map(|probe| probe.named_line());
+    let lines = lines.map(|(name, length)| json!({ "name": name, "length": length }));
+    [groups.collect(), materials.into(), lines.collect()]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use trackbed_input::scene::Document;
 
     #[test]
-    fn reads_names_of_groups_and_materials() {
-        let text = "[[grains]]\nname = \"ballast\"\nmaterial = \"stone\"\n[[grains]]\nname = \"crib\"\n\
-                    [[solid.material]]\nid = 2\nname = \"clay\"\n[[solid.material]]\nid = 3\n";
-        let groups =
-            json!([{ "name": "ballast", "material": "stone" }, { "name": "crib", "material": null }]);
-        assert_eq!(of_scene(text), [groups, json!({ "2": "clay" })]);
+    fn reads_names_of_groups_materials_and_lines() {
+        let text = "title = \"a\"\n[[grains]]\nname = \"ballast\"\nshape = \"sphere\"\nmaterial = \"stone\"\n[solid]\n\
+                    [[solid.material]]\nid = 2\nname = \"clay\"\ndensity = 2\n[[solid.material]]\nid = 3\ndensity = 2\n\
+                    [[probe]]\nline = [[0, 0, 0], [\"30 cm\", 0, 0.4]]\n[[probe]]\nat = [0, 0, 0]\n";
+        let document = Document::with_included(Path::new("a.toml"), text.into(), vec![]).unwrap();
+        let groups = json!([{ "name": "ballast", "material": "stone" }]);
+        let lines = json!([{ "name": "line", "length": 0.5 }]);
+        assert_eq!(of_scene(Some(document.scene().unwrap())), [groups, json!({ "2": "clay" }), lines]);
     }
 
     #[test]
     fn unreadable_scene_has_no_names() {
-        assert_eq!(of_scene("[[grains"), [json!([]), json!({})]);
+        assert_eq!(of_scene(None), [json!([]), json!({}), json!([])]);
     }
 }

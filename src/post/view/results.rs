@@ -173,9 +173,10 @@ impl Results {
         chunk.meta("grainFields", json!(common.grain_fields));
         chunk.meta("solidFields", json!(common.solid_fields));
         chunk.meta("tables", json!(tables.collect::<Vec<_>>()));
-        let [groups, materials] = names::of_run(&self.dir);
+        let [groups, materials, lines] = names::of_run(&self.dir);
         chunk.meta("groups", groups);
         chunk.meta("materials", materials);
+        chunk.meta("lines", lines);
         Ok(chunk.finish())
     }
 }

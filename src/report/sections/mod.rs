@@ -12,6 +12,7 @@ mod overlay;
 mod overview;
 mod packing;
 mod picture;
+mod profiles;
 mod reproduce;
 mod settlement;
 mod slopes;
@@ -28,7 +29,7 @@ type Make = fn(&[RunData]) -> Option<Section>;
 
 /// Returns all sections with data; `axle_load` of a cycle [t].
 pub fn all(runs: &[RunData], axle_load: Option<f64>) -> Vec<Section> {
-    let sections: [Make; 25] = [
+    let sections: [Make; 26] = [
         verdict::verdict,
         compare::compare,
         picture::picture,
@@ -48,6 +49,7 @@ pub fn all(runs: &[RunData], axle_load: Option<f64>) -> Vec<Section> {
         slopes::specimen,
         bonds::bonds,
         solid::solid,
+        profiles::profiles,
         solid::safety,
         solid::modes,
         accounts::energy,

@@ -1,6 +1,7 @@
 //! Solid: displacement, equilibrium, plasticity, safety, modes.
 
 use super::overlay::{dominant, facts, one, overlay};
+use super::profiles::is_line_point;
 use crate::data::RunData;
 use crate::page::{Cell, Section, columns, headed, joined, paragraph, plots, table};
 use crate::plot::{Plot, Side};
@@ -30,13 +31,14 @@ pub fn solid(runs: &[RunData]) -> Option<Section> {
                 let time = run.table("history")?.column(history::TIME)?;
                 Some((format!("{stem}, {axis}"), time.iter().zip(values).map(|(t, u)| [*t, *u]).collect()))
             };
-            stems.iter().filter_map(of).collect()
+            stems.iter().filter(|stem| !is_line_point(run, stem)).filter_map(of).collect()
         })
     };
     let stresses = overlay(runs, |run| {
         let Some(table) = run.table("history") else { return Vec::new() };
         let (point, area) = (history::PROBE_STRESS, history::PROBE_VERTICAL_STRESS);
-        let points = table.items(point.at(2)).into_iter().map(|stem| (stem, point.of(stem).at(2)));
+        let points = table.items(point.at(2)).into_iter().filter(|stem| !is_line_point(run, stem));
+        let points = points.map(|stem| (stem, point.of(stem).at(2)));
         let areas = table.items(area).into_iter().map(|stem| (stem, area.of(stem)));
         let of = |(stem, name)| Some((String::from(stem), table.points(history::TIME, name)?));
         points.chain(areas).filter_map(of).collect()

@@ -67,9 +67,41 @@ export class Histories {
       this.settlement = { x: cycles.get('cycle'), y: cycles.get('settlement [m]'), xLabel: 'cycle N', yLabel: 'settlement [m]' };
     }
     this.columns = new Map([...history].filter(([name, values]) => name !== 'time [s]' && values.length > 1 && varies(values)));
-    const names = [...this.columns.keys()];
+    this.profiles = this.profilesOf(history);
+    const names = this.quantities();
     const first = FIRST.map((test) => names.find((name) => test.test(name))).find((name) => name) ?? names[0];
     app.state.historyQuantity = first ?? '';
+  }
+
+  /** Profiles along line probes by name, from the columns of their points, which are then not listed themselves. */
+  profilesOf(history) {
+    const profiles = new Map();
+    for (const { name: line, length } of this.app.meta.lines ?? []) {
+      const first = `${line}_1_`;
+      for (const head of [...history.keys()].filter((name) => name.startsWith(first))) {
+        const quantity = head.slice(first.length);
+        const heads = [];
+        for (let k = 1; history.has(`${line}_${k}_${quantity}`); k += 1) heads.push(`${line}_${k}_${quantity}`);
+        const columns = heads.map((name) => history.get(name));
+        const limit = limits(columns.flatMap((values) => limits(values)));
+        heads.forEach((name) => this.columns.delete(name));
+        if (heads.length < 2 || limit[0] === limit[1]) continue;
+        const x = heads.map((_, k) => (length * k) / (heads.length - 1));
+        profiles.set(`along ${line}: ${quantity}`, { x, columns, limit, xLabel: 'distance [m]', yLabel: `${line}${unitOf(quantity)}` });
+      }
+    }
+    return profiles;
+  }
+
+  /** Names of the columns and profiles that can be plotted. */
+  quantities() { return [...(this.columns?.keys() ?? []), ...(this.profiles?.keys() ?? [])]; }
+
+  /** Plot of a column over time or of a profile in a row of the table. */
+  historyAt(name, row, time) {
+    const column = this.columns?.get(name);
+    if (column) return { x: this.time, y: column, xLabel: 'time [s]', yLabel: unitOf(name), line: time };
+    const profile = this.profiles?.get(name);
+    return profile && { ...profile, y: profile.columns.map((values) => values[row]), points: profile.x.length < 40 };
   }
 
   /** The frame in which the load is largest; the last one where there is no load. */
@@ -94,9 +126,8 @@ export class Histories {
       load: show('plot-load', this.curve && (this.curve.still ? this.curve : { ...this.curve, mark: [this.curve.x[row], this.curve.y[row]] })),
     };
     const { picked, historyQuantity: name } = state;
-    const column = this.columns?.get(name);
-    this.marks.history = show('plot-history', column && { x: this.time, y: column, xLabel: 'time [s]', yLabel: unitOf(name), line: state.time });
-    if (column) this.offer('history', [...this.columns.keys()], name);
+    this.marks.history = show('plot-history', this.historyAt(name, row, state.time));
+    if (this.marks.history) this.offer('history', this.quantities(), name);
     const curve = picked?.history?.[state.pickedQuantity];
     this.marks.picked = show('plot-picked', curve && { ...curve, line: state.time });
     if (curve) this.offer('picked', Object.keys(picked.history), state.pickedQuantity);

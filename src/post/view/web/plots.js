@@ -13,8 +13,8 @@ function axis(values, label, from, to) {
   return { name: unit ? `${name} [${unit}]` : name, place, ticks: at.map((t, k) => [place(t * factor), texts[k]]) };
 }
 
-/** Draws y over x on a canvas. `line`: an x that is marked, `mark`: a point. */
-export function plot(canvas, { x, y, xLabel, yLabel, line, mark, points }) {
+/** Draws y over x on a canvas. `line`: an x that is marked, `mark`: a point, `limit`: least and largest y if not those of y. */
+export function plot(canvas, { x, y, xLabel, yLabel, line, mark, points, limit }) {
   const ratio = Math.min(window.devicePixelRatio, 2);
   const [w, h] = [canvas.clientWidth || 260, canvas.clientHeight || 150];
   [canvas.width, canvas.height] = [w * ratio, h * ratio];
@@ -24,7 +24,7 @@ export function plot(canvas, { x, y, xLabel, yLabel, line, mark, points }) {
   g.fillRect(0, 0, w, h);
   g.font = '11px system-ui, sans-serif';
   const [left, right, top, bottom] = [52, w - 18, 22, h - 30];
-  const [across, up] = [axis(x, xLabel, left, right), axis(y, yLabel, bottom, top)];
+  const [across, up] = [axis(x, xLabel, left, right), axis(limit ?? y, yLabel, bottom, top)];
   const stroke = (style, width, places) => {
     Object.assign(g, { strokeStyle: style, lineWidth: width });
     g.beginPath();
