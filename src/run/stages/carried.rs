@@ -4,10 +4,9 @@
 
 use super::stage::Settled;
 use crate::checkpoint::Loaded;
-use trackbed_coupling as coupling;
+use crate::system::SavedCoupling;
 use trackbed_dem as dem;
 use trackbed_dem::BodyInput;
-use trackbed_fem as fem;
 use trackbed_input::model::grains::GrainsPart;
 use trackbed_io::failure::Failure;
 
@@ -25,13 +24,9 @@ impl Carried {
     /// State of another program.
     pub fn read(loaded: &mut Loaded, coupled: bool) -> Result<Carried, Failure> {
         let bed: Option<Settled> = loaded.take()?;
-        let state = if coupled {
-            let (_, _, state, _) =
-                loaded
-                    .take::<(Vec<f64>, Option<fem::nonlinear::SolverState>, coupling::step::State, f64)>()?;
-            state.grains
-        } else {
-            loaded.take()?
+        let state = match coupled {
+            true => loaded.take::<SavedCoupling<'_>>()?.state.into_owned().grains,
+            false => loaded.take()?,
         };
         Ok(Carried { begun: bed.map(|bed| bed.bodies), state, count: 0 })
     }

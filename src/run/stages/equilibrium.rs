@@ -8,7 +8,7 @@ use crate::device::{Place, Steps};
 use crate::from::END;
 use crate::initial;
 use crate::summary::{CouplingRecord, Summary};
-use crate::system::{CoupledSystem, Meshed};
+use crate::system::{CoupledSystem, Meshed, SavedCoupling};
 use std::sync::Arc;
 use trackbed_coupling as coupling;
 use trackbed_coupling::scheme::Scheme;
@@ -103,7 +103,10 @@ fn couple<'b>(
     let dead_load = solid.dead_load(body.model);
     let Bed { model: grains, start, carried } = bed;
     let (reference, memory, state, seat_work) = match resumed {
-        Some(loaded) => kept(loaded)?,
+        Some(loaded) => {
+            let SavedCoupling { reference, memory, state, seat_work } = saved(loaded)?;
+            (reference.into_owned(), memory, state.into_owned(), seat_work)
+        }
         None => {
             let (state, mut resting, contacts) =
                 equilibrium(body, (&grains, start), &mut surface, &dead_load)?;
@@ -187,17 +190,14 @@ fn reduce(
     Ok(())
 }
 
-/// Reference displacement, solver history, states, seat work [J].
-type Kept = (Vec<f64>, Option<fem::nonlinear::SolverState>, coupling::step::State, f64);
-
-/// A final state of another run restarts the balances.
-fn kept(loaded: &mut Loaded) -> Result<Kept, Failure> {
-    let (reference, memory, mut state, seat_work): Kept = loaded.take()?;
-    if loaded.moment.stage != END {
-        return Ok((reference, memory, state, seat_work));
+/// Reads a checkpoint. The end of another run restarts the balances.
+fn saved(loaded: &mut Loaded) -> Result<SavedCoupling<'static>, Failure> {
+    let mut saved: SavedCoupling<'_> = loaded.take()?;
+    if loaded.moment.stage == END {
+        saved.state.to_mut().reset_time_and_balances();
+        saved = SavedCoupling { memory: None, seat_work: 0.0, ..saved };
     }
-    state.reset_time_and_balances();
-    Ok((reference, None, state, 0.0))
+    Ok(saved)
 }
 
 struct Bed<'a> {

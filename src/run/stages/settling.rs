@@ -1,13 +1,14 @@
 //! Deposition of grains under gravity, and levelling.
 
 use super::layers::drop_layers;
-use super::stage::{GrainTime, Packed, RunState, SETTLING, Settled, Stage, Steps};
+use super::stage::{GrainTime, Packed, Packing, RunState, SETTLING, Settled, Stage, Steps};
 use crate::bed;
 use crate::checkpoint::{Loaded, Moment};
 use crate::context::Run;
 use crate::packing::{BedStage, StageEnergy};
 use crate::summary::StageRecord;
 use crate::system::GrainsView;
+use std::borrow::Cow;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::{BackEnd, BodyInput};
@@ -100,7 +101,8 @@ fn settle(
             run.checkpoints.step(
                 || Moment { stage: SETTLING.into(), step: state.steps, time: state.time },
                 |body| {
-                    body.put(&(Packed::Layered, &grains.groups.bodies, &*bed))?;
+                    let (bodies, bed) = (Cow::Borrowed(&grains.groups.bodies[..]), Cow::Borrowed(&*bed));
+                    body.put(&Packing { done: Packed::Layered, bodies, bed })?;
                     body.put(&(&state, progress.seconds()))
                 },
             )?;

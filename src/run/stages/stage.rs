@@ -10,6 +10,7 @@ use crate::sources;
 use crate::summary::{StageRecord, Summary};
 use crate::system::CoupledSystem;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::path::Path;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
@@ -129,11 +130,15 @@ impl Settled {
     }
 }
 
-#[derive(Deserialize)]
-struct Packing {
-    done: Packed,
-    bodies: Vec<BodyInput>,
-    bed: Settled,
+/// Checkpoint between packing stages, and before the state of settling.
+#[derive(Serialize, Deserialize)]
+pub struct Packing<'a> {
+    /// Stages done.
+    pub done: Packed,
+    /// Grains of the next stage.
+    pub bodies: Cow<'a, [BodyInput]>,
+    /// The bed so far.
+    pub bed: Cow<'a, Settled>,
 }
 
 /// Returns completed packing stages and main-loop time [s] of the run in `dir`.
@@ -144,7 +149,10 @@ pub fn reached(dir: &Path, job: &Job) -> (Vec<StageRecord>, Option<f64>) {
         RUN if !is_packed(job) => (Vec::new(), Some(time)),
         RUN => (loaded.take().map_or_else(|_| Vec::new(), |bed: Settled| bed.stages), Some(time)),
         SETTLED => (loaded.take().map_or_else(|_| Vec::new(), |bed: Settled| bed.stages), None),
-        _ => (loaded.take().map_or_else(|_| Vec::new(), |packing: Packing| packing.bed.stages), None),
+        _ => (
+            loaded.take().map_or_else(|_| Vec::new(), |packing: Packing<'_>| packing.bed.into_owned().stages),
+            None,
+        ),
     }
 }
 
@@ -187,7 +195,8 @@ impl GrainsState {
         self.bed.planes = planes(&self.part);
         let step = self.bed.stages.iter().map(|s| s.grain_steps).sum();
         let moment = Moment { stage: PACKING.into(), step, time: self.bed.time };
-        run.checkpoints.save(moment, |body| body.put(&(done, &self.part.groups.bodies, &self.bed)))
+        let (bodies, bed) = (Cow::Borrowed(&self.part.groups.bodies[..]), Cow::Borrowed(&self.bed));
+        run.checkpoints.save(moment, |body| body.put(&Packing { done, bodies, bed }))
     }
 }
 
@@ -266,9 +275,10 @@ impl RunState<'_> {
                 RUN | SETTLED => (grains.bed, grains.done) = (loaded.take()?, Packed::Finished),
                 _ => {
                     let Packing { done, bodies, bed } = loaded.take()?;
-                    grains.part.groups.bodies = bodies;
-                    bed.planes.iter().enumerate().for_each(|(k, x)| grains.part.place_plane(k, *x));
-                    (grains.bed, grains.done) = (bed, done);
+                    (grains.part.groups.bodies, grains.bed, grains.done) =
+                        (bodies.into_owned(), bed.into_owned(), done);
+                    let GrainsState { part, bed, .. } = &mut grains;
+                    bed.planes.iter().enumerate().for_each(|(k, x)| part.place_plane(k, *x));
                 }
             }
             self.loaded.take_if(|l| ![RUN, SETTLING].contains(&l.moment.stage.as_str()));

@@ -3,6 +3,8 @@
 use super::{Applied, GrainsView, SolidView, System};
 use crate::checkpoint::Body;
 use crate::device::{Steps, failed};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::io;
 use trackbed_coupling as coupling;
 use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
@@ -90,8 +92,22 @@ impl CoupledSystem<'_> {
         seat_work: f64,
         body: &mut Body<'_>,
     ) -> io::Result<()> {
-        body.put(&(&self.model.reference, memory, &self.state, seat_work))
+        let (reference, state) = (Cow::Borrowed(&self.model.reference[..]), Cow::Borrowed(&self.state));
+        body.put(&SavedCoupling { reference, memory, state, seat_work })
     }
+}
+
+/// Checkpoint of the system.
+#[derive(Serialize, Deserialize)]
+pub struct SavedCoupling<'a> {
+    /// Displacement from which strain energy counts [m]. Shape `[3·nodes]`.
+    pub reference: Cow<'a, [f64]>,
+    /// Of an elastoplastic solver; none at the end of a run.
+    pub memory: Option<fem::nonlinear::SolverState>,
+    /// Grains, solid and interface.
+    pub state: Cow<'a, coupling::step::State>,
+    /// Work of seat loads [J].
+    pub seat_work: f64,
 }
 
 impl TrackSystem for CoupledSystem<'_> {

@@ -4,7 +4,7 @@ mod coupled;
 mod grains;
 mod solid;
 
-pub use coupled::{CoupledSystem, Meshed};
+pub use coupled::{CoupledSystem, Meshed, SavedCoupling};
 pub use grains::GrainsSystem;
 pub use solid::{SolidKind, SolidSystem};
 pub use trackbed_track::GrainsView;

@@ -7,6 +7,8 @@ use crate::checkpoint::{Body, Loaded};
 use crate::checkpoint_store::Interrupt;
 use crate::initial;
 use loading::SolidLoading;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::io;
 use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
 use trackbed_fem as fem;
@@ -79,6 +81,18 @@ pub struct SolidSystem<'a> {
     spent: WorkAndDissipation,
 }
 
+/// Checkpoint of the system. The load follows from the time.
+#[derive(Serialize, Deserialize)]
+struct Saved<'a> {
+    /// Of an elastoplastic solver.
+    memory: Option<SolverState>,
+    state: Cow<'a, State>,
+    carried: f64,
+    steps: u64,
+    reactions: Cow<'a, [f64]>,
+    spent: WorkAndDissipation,
+}
+
 impl<'a> SolidSystem<'a> {
     /// Creates the solid at time 0, accelerated by its loads or in equilibrium; `step` [s].
     ///
@@ -122,23 +136,15 @@ impl<'a> SolidSystem<'a> {
     ) -> Result<Self, Failure> {
         let loading = SolidLoading::new(part, kind, interrupt);
         let mut system = SolidSystem::with(part, kind, step, loading, State::new(&part.model))?;
-        if system.integrator.solver_state().is_some() {
-            let memory = loaded.take()?;
+        let saved: Saved<'_> = loaded.take()?;
+        if let Some(memory) = saved.memory {
             system.integrator.restore(&part.model, &memory).map_err(|e| part.failure(&e))?;
         }
-        // The stored load follows from the time.
-        match kind {
-            SolidKind::Elastic(_) => (system.state, _, system.spent) = loaded.take::<(_, Vec<f64>, _)>()?,
-            SolidKind::Plastic(_) => {
-                (system.state, system.steps, _, system.spent) = loaded.take::<(_, _, Vec<f64>, _)>()?;
-            }
-            SolidKind::QuasiStatic(_) => {
-                let carried;
-                (system.state, carried, system.steps, _, system.reactions, system.spent) =
-                    loaded.take::<(_, _, _, Vec<f64>, _, _)>()?;
-                system.loading.carried = carried;
-            }
-        }
+        system.state = saved.state.into_owned();
+        system.loading.carried = saved.carried;
+        system.steps = saved.steps;
+        system.reactions = saved.reactions.into_owned();
+        system.spent = saved.spent;
         Ok(system)
     }
 
@@ -276,18 +282,14 @@ impl System for SolidSystem<'_> {
     }
 
     fn save(&self, body: &mut Body<'_>) -> io::Result<()> {
-        if let Some(memory) = self.given_up.or_else(|| self.integrator.solver_state()) {
-            body.put(&memory)?;
-        }
-        let SolidSystem { state, steps, reactions, spent, .. } = self;
-        let load = self.loading.at(state.time);
-        match self.kind {
-            SolidKind::Elastic(_) => body.put(&(state, load, spent)),
-            SolidKind::Plastic(_) => body.put(&(state, steps, load, spent)),
-            SolidKind::QuasiStatic(_) => {
-                body.put(&(state, self.loading.carried, steps, load, reactions, spent))
-            }
-        }
+        body.put(&Saved {
+            memory: self.given_up.or_else(|| self.integrator.solver_state()),
+            state: Cow::Borrowed(&self.state),
+            carried: self.loading.carried,
+            steps: self.steps,
+            reactions: Cow::Borrowed(&self.reactions),
+            spent: self.spent,
+        })
     }
 
     fn stored(&self) -> StoredEnergy {
