@@ -21,7 +21,7 @@ use super::abaqus_lines::{Block, read_blocks};
 use super::abaqus_sets::{self as sets, Members};
 use super::degenerate::from_brick;
 use super::error::ReadError;
-use super::foreign_elements::{FOREIGN, foreign};
+use super::foreign_elements::{FOREIGN, foreign, listed};
 use super::mesh_file::{Builder, MeshFile};
 use super::number;
 
@@ -267,7 +267,8 @@ fn elements(builder: &mut Builder, deck: &mut Deck, block: &Block) -> Result<(),
     let name = block.required(builder, "TYPE")?.to_uppercase();
     let kind = element_type(&name);
     if let Type::Unknown = kind {
-        let expected = "C3D20, C3D15, C3D10, C3D8, C3D6, C3D5 or C3D4, with or without R, I, H, M";
+        let expected =
+            format!("{}, with or without R, I, H, M", listed(|row| row.abaqus.0.trim_end_matches('R')));
         return Err(builder.fault(block.line, "element type", name, expected));
     }
     let count = match &kind {

@@ -61,6 +61,17 @@ pub(crate) fn foreign(kind: ElementKind) -> &'static ForeignElement {
     &FOREIGN[kind as usize]
 }
 
+/// Names of all kinds for messages, each once.
+pub(crate) fn listed(name: impl Fn(&'static ForeignElement) -> &'static str) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for name in FOREIGN.iter().map(name) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names.join(", ")
+}
+
 /// All kinds, in the order of [`ElementKind::ALL`].
 pub(crate) static FOREIGN: [ForeignElement; ElementKind::ALL.len()] = [
     ForeignElement {

@@ -16,7 +16,7 @@
 use trackbed_fem::ElementKind;
 
 use super::error::ReadError;
-use super::foreign_elements::FOREIGN;
+use super::foreign_elements::{FOREIGN, listed};
 use super::mesh_file::{Builder, MeshFile};
 
 #[derive(Clone, Debug, Default)]
@@ -146,8 +146,7 @@ fn elements(builder: &mut Builder, grid: &Grid, node_ids: &[u32]) -> Result<Vec<
                 (ElementKind::Hex8, "VTK_VOXEL")
             }
             None => {
-                let expected =
-                    "VTK types 10 to 14 and 24 to 27: linear cells, or quadratic ones with nodes on edges";
+                let expected = format!("{} or VTK_VOXEL", listed(|row| row.vtk.1));
                 return Err(builder.fault(0, key(), format!("VTK type {type_number}"), expected));
             }
         };
