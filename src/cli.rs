@@ -203,7 +203,14 @@ pub struct NewArgs {
 #[derive(Debug, Args)]
 pub struct StudyArgs {
     /// Study file (TOML).
-    pub study: PathBuf,
+    #[arg(required_unless_present = "score")]
+    pub study: Option<PathBuf>,
+    /// Run nothing: score predictions against measured values (CSV files as in inputs/ballast/blind).
+    #[arg(long, num_args = 2, value_names = ["PREDICTIONS", "MEASURED"], conflicts_with_all = ["study", "out", "threads", "jobs", "task", "merge", "resume", "force", "quiet"])]
+    pub score: Vec<PathBuf>,
+    /// Curve given for calibration, for null models beside the predictions.
+    #[arg(long, value_name = "CSV", requires = "score")]
+    pub given: Option<PathBuf>,
     /// Results directory [default: results/NAME of the study file].
     #[arg(long)]
     pub out: Option<PathBuf>,

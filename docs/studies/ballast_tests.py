@@ -1,6 +1,6 @@
 """Figures of the ballast tests from their folders of results, one line each, and the mean and spread of the main ones.
 
-    python3 docs/studies/ballast_tests.py box|shear|triaxial|cyclic|oedometer|push|crushing FOLDER...
+    python3 docs/studies/ballast_tests.py box|shear|triaxial|cyclic|blind|oedometer|push|crushing FOLDER...
 
 FOLDER holds what `trackbed run` left: cycles.csv, history.csv, push.csv, summary.json. Needs Python 3 and nothing else.
 """
@@ -148,6 +148,21 @@ def cyclic(folder):
     return result
 
 
+def blind(folders):
+    """Predictions in the form of inputs/ballast/blind/predictions.csv, by the name of the test in the names of the folders."""
+    tests = {}
+    for folder in folders:
+        name = re.search(r"p(\d+)_q(\d+)_(\d+)Hz", os.path.basename(os.path.normpath(folder)))
+        tests.setdefault(name[0], (name.groups(), []))[1].append(cyclic(folder))
+    print("test,pressure [kPa],deviator [kPa],frequency [Hz],N,strain,value [%],low [%],high [%]")
+    for name, (numbers, found) in tests.items():
+        for strain, column in ("axial", 0), ("volumetric", 3):
+            for n in 1, 10, 50, 100:
+                values = [rows[column] for rows in ([v for k, v in f.items() if k.startswith(f"N = {n}:")][0] for f in found)]
+                cells = ",".join(f"{v:.3f}" for v in (mean(values), min(values), max(values)))
+                print(f"{name},{','.join(numbers)},{n},{strain},{cells}")
+
+
 def oedometer(folder):
     """Constrained moduli between pressures on the way up and up again. Height 0.29 m less what the plate has come."""
     h = table(folder, "history.csv")
@@ -232,6 +247,8 @@ def written(value):
 
 def main():
     test, folders = globals()[sys.argv[1]], [f for f in sys.argv[2:] if os.path.isdir(f)]
+    if test is blind:
+        return blind(folders)
     found = []
     for folder in folders:
         found.append(test(folder))

@@ -8,11 +8,15 @@ use trackbed_io::failure::Failure;
 use trackbed_io::message;
 use trackbed_run::Interrupt;
 
-/// Runs a study and prints its table.
+/// Runs a study and prints its table, or scores predictions.
 ///
 /// # Errors
 /// Input and I/O errors, interrupts, a failed reference.
 pub fn study(args: StudyArgs) -> Result<(), Failure> {
+    let Some(file) = args.study else {
+        let [predictions, measured] = args.score.as_slice() else { unreachable!("two files") };
+        return output::print(&study::scored(predictions, measured, args.given.as_deref())?);
+    };
     let quiet = args.quiet;
     let options = study::Options {
         out: args.out,
@@ -26,7 +30,7 @@ pub fn study(args: StudyArgs) -> Result<(), Failure> {
         interrupt: Interrupt::on_signals("the active runs have written checkpoints")?,
     };
     let check = |scene: &Path, set: &[String]| check::check(scene, set, None, false).map(drop);
-    let study::Finished { text, failure } = study::execute(&args.study, &options, &check)?;
+    let study::Finished { text, failure } = study::execute(&file, &options, &check)?;
     // Tables are saved, so output may fail.
     if !quiet && let Err(failure) = output::print(&text) {
         message::note(&format!("standard output: {failure}"));

@@ -20,6 +20,7 @@ mod process;
 mod quantity;
 mod sample;
 mod schedule;
+mod score;
 mod statistics;
 mod store;
 mod summary;
@@ -28,6 +29,7 @@ mod target;
 mod text;
 
 pub use page::{is_study, write as report};
+pub use score::scored;
 
 use analysis::Analysis;
 use file::StudyFile;
