@@ -21,6 +21,8 @@ pub struct Simulation {
     worker: Option<JoinHandle<()>>,
     interrupt: Interrupt,
     place: Place,
+    /// Results directory.
+    out: PathBuf,
     /// Set once complete.
     folder: Option<PathBuf>,
 }
@@ -28,11 +30,12 @@ pub struct Simulation {
 #[pymethods]
 impl Simulation {
     #[new]
-    #[pyo3(signature = (scene, out, set, threads, memory, resume, from_run, bed, force, strict, progress))]
+    #[pyo3(signature = (scene, text, out, set, threads, memory, resume, from_run, bed, force, strict, progress))]
     #[expect(clippy::too_many_arguments, reason = "one for each option of the program")]
     fn new(
         py: Python<'_>,
         scene: PathBuf,
+        text: Option<String>,
         out: Option<PathBuf>,
         set: Vec<String>,
         threads: Option<usize>,
@@ -44,7 +47,10 @@ impl Simulation {
         strict: bool,
         progress: bool,
     ) -> PyResult<Simulation> {
-        let mut options = options(out, set, threads, memory, resume, from_run, bed, force, strict, progress)?;
+        let mut options =
+            options(text, out, set, threads, memory, resume, from_run, bed, force, strict, progress)?;
+        let out = running::default_folder(&scene, &options.set);
+        let out = options.out.get_or_insert(out).clone();
         let interrupt = options.interrupt.clone();
         let (orders, received) = mpsc::channel();
         let (send, reports) = mpsc::channel();
@@ -62,6 +68,7 @@ impl Simulation {
             worker: Some(worker),
             interrupt,
             place: Place::default(),
+            out,
             folder: None,
         };
         // While packing, the run saves and stops.
@@ -92,6 +99,12 @@ impl Simulation {
     #[getter]
     fn finished(&self) -> bool {
         self.folder.is_some() || (self.place.windows > 0 && self.place.done >= self.place.windows)
+    }
+
+    /// Results directory, also of a run in progress.
+    #[getter]
+    fn out(&self) -> PathBuf {
+        self.out.clone()
     }
 
     /// Folder of the results, once they are complete.

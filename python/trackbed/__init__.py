@@ -13,7 +13,20 @@ found, expected), a numerical failure a `NumericalError`; Ctrl-C keeps a checkpo
 
 from ._trackbed import NumericalError, __version__
 from .results import Result
-from .running import check, explain, run, schema, study
+from .running import check, explain, new, run, schema, study
+from .scene import Scene
 from .simulation import Simulation
 
-__all__ = ["NumericalError", "Result", "Simulation", "__version__", "check", "explain", "run", "schema", "study"]
+__all__ = [
+    "NumericalError",
+    "Result",
+    "Scene",
+    "Simulation",
+    "__version__",
+    "check",
+    "explain",
+    "new",
+    "run",
+    "schema",
+    "study",
+]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import Self, disjoint_base
 
-__all__ = ["NumericalError", "Simulation", "__version__", "check", "command", "explain", "run", "schema"]
+__all__ = ["NumericalError", "Simulation", "__version__", "check", "command", "explain", "read", "run", "schema"]
 
 __version__: str
 
@@ -25,6 +25,7 @@ class Simulation:
     def __new__(
         cls,
         scene: _Path,
+        text: Optional[str],
         out: Optional[_Path],
         set: Sequence[str],
         threads: Optional[int],
@@ -48,6 +49,9 @@ class Simulation:
     @property
     def finished(self) -> bool:
         """Whether the last window is done. The results are complete after `finish`."""
+    @property
+    def out(self) -> Path:
+        """Results directory, also of a run in progress."""
     @property
     def folder(self) -> Optional[Path]:
         """Folder of the results, once they are complete."""
@@ -93,6 +97,7 @@ class Simulation:
 
 def run(
     scene: _Path,
+    text: Optional[str],
     out: Optional[_Path],
     set: Sequence[str],
     threads: Optional[int],
@@ -104,7 +109,8 @@ def run(
     strict: bool,
     progress: bool,
 ) -> Path: ...
-def check(scene: _Path, set: Sequence[str], strict: bool) -> str: ...
-def explain(scene: _Path, set: Sequence[str], threads: Optional[int], trial: float) -> str: ...
+def check(scene: _Path, text: Optional[str], set: Sequence[str], strict: bool) -> str: ...
+def explain(scene: _Path, text: Optional[str], set: Sequence[str], threads: Optional[int], trial: float) -> str: ...
 def schema() -> str: ...
+def read(file: _Path) -> tuple[str, dict[str, Any]]: ...
 def command(words: Sequence[str]) -> int: ...

@@ -9,6 +9,7 @@ from typing import Any, Union
 from . import _trackbed
 from .overrides import Overrides, assignments
 from .results import Result
+from .scene import SceneLike, source
 
 
 class Simulation(_trackbed.Simulation):
@@ -33,7 +34,7 @@ class Simulation(_trackbed.Simulation):
 
     def __new__(
         cls,
-        scene: Union[str, "os.PathLike[str]"],
+        scene: SceneLike,
         out: Union[str, "os.PathLike[str]", None] = None,
         *,
         set: Overrides = None,
@@ -47,7 +48,7 @@ class Simulation(_trackbed.Simulation):
         progress: bool = False,
     ) -> Simulation:
         self = super().__new__(
-            cls, scene, out, assignments(set), threads, memory, resume, from_run, bed, force, strict, progress
+            cls, *source(scene), out, assignments(set), threads, memory, resume, from_run, bed, force, strict, progress
         )
         self._result = None
         return self
