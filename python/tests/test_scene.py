@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import trackbed
+from trackbed.results import columns
 from trackbed.scene import Table, tree
 from trackbed.toml import document
 
@@ -230,6 +231,54 @@ def test_template(tmp_path):
     assert "unknowns" in "".join(trackbed.check(scene)["lines"])
     with pytest.raises(ValueError, match="new: found foting, expected one of track, box"):
         trackbed.new("foting", tmp_path / "other")
+
+
+def test_tabulated_load_matches_closed_form(tmp_path):
+    """Column without lateral strain under p f(t): u = p f h / M."""
+    def pulse(t):
+        return np.sin(np.pi * t) ** 2
+
+    times = np.linspace(0.0, 1.0, 21)
+    young, poisson, height, pressure = 50e6, 0.3, 2.0, 80e3
+    scene = trackbed.Scene(
+        title="column",
+        solid={
+            "gravity": False,
+            "block": {axis: {"lines": [0.0, length], "counts": [1]} for axis, length in zip("xyz", [0.5, 0.5, height])},
+            "material": [{"id": 1, "name": "soil", "young": young, "poisson": poisson, "density": 1900}],
+            "support": [{"side": side, "directions": [side[0]]} for side in ["x-", "x+", "y-", "y+", "z-"]],
+            "load": [
+                {
+                    "kind": "pressure",
+                    "faces_in": [[0, 0, height], [0.5, 0.5, height]],
+                    "pressure": pressure,
+                    "history": {"kind": "table", "points": trackbed.tabulate(pulse, times)},
+                }
+            ],
+            "quasi_static": {},
+        },
+        probe=[{"name": "top", "at": [0, 0, height]}],
+        time={"end": 1.0, "solid_step": 0.01},
+        output={"frames": 0, "history_interval": 0.01},
+    )
+    history = columns(trackbed.run(scene, tmp_path / "out").folder / "history.csv")
+    modulus = young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson))
+    found = -history["top_u_z [m]"] * modulus / (pressure * height)
+    error = np.abs(found - pulse(history["time [s]"]))
+    bound = 0.05**2 * 2 * np.pi**2 / 8
+    assert 0.5 * bound < error.max() < 1.001 * bound
+    assert np.abs(found - np.interp(history["time [s]"], times, pulse(times))).max() < 1e-9
+
+
+def test_tabulate_checks_values():
+    assert trackbed.tabulate(lambda t: 2.0, [0, 1]) == [[0.0, 2.0], [1.0, 2.0]]
+    assert trackbed.tabulate(np.sin, np.array([0.0])) == [[0.0, 0.0]]
+    with pytest.raises(ValueError, match="times: found .* expected ascending, finite times"):
+        trackbed.tabulate(np.sin, [0.0, 0.0])
+    with pytest.raises(ValueError, match=r"function: found values of shape \(2,\), expected \(3,\)"):
+        trackbed.tabulate(lambda t: t[1:], [0.0, 1.0, 2.0])
+    with pytest.raises(ValueError, match="function: found inf at 0.0 s"), np.errstate(divide="ignore"):
+        trackbed.tabulate(lambda t: 1 / t, [0.0, 1.0])
 
 
 def test_type_checkers_find_wrong_keys(tmp_path):

@@ -12,6 +12,7 @@ found, expected), a numerical failure a `NumericalError`; Ctrl-C keeps a checkpo
 """
 
 from ._trackbed import NumericalError, __version__
+from .functions import tabulate
 from .results import Result
 from .running import check, explain, new, run, schema, study
 from .scene import Scene
@@ -29,4 +30,5 @@ __all__ = [
     "run",
     "schema",
     "study",
+    "tabulate",
 ]
