@@ -211,7 +211,7 @@ def test_included_keys_are_replaced(tmp_path, balls):
     scene.include = ["stone.toml"]
     scene.material = [{"name": "stone", "friction": 0.2}]
     scene.path = tmp_path / "scene.toml"
-    assert trackbed.run(scene, tmp_path / "out").summary["status"] == "done"
+    assert trackbed.run(scene, tmp_path / "out").status == "done"
     (tmp_path / "below").mkdir()
     scene.save(tmp_path / "below" / "scene.toml")
     assert scene.include == ["../stone.toml"] and trackbed.check(scene)["title"] == "falling"
@@ -220,7 +220,7 @@ def test_included_keys_are_replaced(tmp_path, balls):
 def test_start_from_run_of_scene(tmp_path, balls):
     first = trackbed.run(balls(), tmp_path / "first")
     second = trackbed.run(balls(), tmp_path / "second", from_run=first.folder)
-    assert second.summary["status"] == "done"
+    assert second.status == "done"
     z = [result.mesh("grains").points[:, 2] for result in [first, second]] if importlib.util.find_spec("pyvista") else None
     assert z is None or not np.array_equal(*z)
 

@@ -14,13 +14,14 @@ found, expected), a numerical failure a `NumericalError`; Ctrl-C keeps a checkpo
 from ._trackbed import NumericalError, __version__
 from .functions import tabulate
 from .results import Result
-from .running import check, explain, new, run, schema, study
+from .running import STOP, check, explain, new, run, schema, study
 from .scene import Scene
 from .simulation import Simulation
 
 __all__ = [
     "NumericalError",
     "Result",
+    "STOP",
     "Scene",
     "Simulation",
     "__version__",

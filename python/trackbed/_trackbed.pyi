@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, Optional, Sequence, Union
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Self, disjoint_base
 
 __all__ = ["NumericalError", "Simulation", "__version__", "check", "command", "explain", "read", "run", "schema"]
@@ -64,6 +64,9 @@ class Simulation:
         not in memory any more."""
     def close(self) -> None:
         """Stops a run that is not done; a checkpoint is kept, from which it can be resumed."""
+    def halt(self) -> tuple[Path, Optional[str]]:
+        """Stops the run with a checkpoint, of the first window at the earliest, and writes its results so far: their folder, and the
+        message of the stop; no message if the run was complete."""
     def __len__(self) -> int:
         """Number of bodies: grains and sleepers, those that have not come yet and those that have left included."""
     def positions(self, out: Optional[_Array] = None) -> _Array:
@@ -92,6 +95,8 @@ class Simulation:
     def apply_force(self, body: int, force: Union[Sequence[float], _Array]) -> None:
         """Pushes a body with a force [N] through its centre of mass in every step from now on; a further call replaces it, zero takes it
         away."""
+    def apply_forces(self, forces: ArrayLike) -> None:
+        """Applies forces [N], shape (bodies, 3), through the centres of mass in every step from now on, in place of all earlier ones."""
     def clear_forces(self) -> None:
         """Takes all applied forces away."""
 

@@ -26,7 +26,21 @@ class Result:
             raise ValueError(f"{self.folder}: found no such folder, expected the folder of the results of a run")
 
     def __repr__(self) -> str:
-        return f"<trackbed.Result {str(self.folder)!r}: {self.summary.get('status')}>"
+        return f"<trackbed.Result {str(self.folder)!r}: {self.status}>"
+
+    @property
+    def status(self) -> str:
+        """"done", "interrupted" (stopped with a checkpoint), "failed: …", or "incomplete" without `summary.json`."""
+        try:
+            return str(self.summary.get("status"))
+        except ValueError:
+            return "incomplete"
+
+    @property
+    def checkpoint(self) -> Path | None:
+        """Checkpoint of a stopped run, from which `run(…, resume=True)` continues; `None` of a complete run."""
+        folder = self.folder / "checkpoint"
+        return folder if folder.is_dir() else None
 
     @cached_property
     def summary(self) -> dict[str, Any]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import csv
+import enum
 import json
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Union
+from typing import Any, Final, Union
 
 from . import _trackbed
 from .overrides import Overrides, assignments
@@ -17,6 +18,15 @@ from .scene import Scene, SceneLike, source
 from .simulation import Simulation
 
 Folder = Union[str, "os.PathLike[str]"]
+
+
+class Stop(enum.Enum):
+    """Request of a callback."""
+
+    STOP = "stop"
+
+
+STOP: Final = Stop.STOP
 
 
 def run(
@@ -47,8 +57,9 @@ def run(
     force: replace what is in `out`.
     strict: refuse values that are not plausible.
     progress: show the program's progress on standard error.
-    callback: called with the paused `Simulation` before the first window and after each `every` windows, the last included. An exception
-        in it ends the run with a checkpoint.
+    callback: called with the paused `Simulation` before the first window and after each `every` windows, the last included. If it
+        returns `trackbed.STOP`, the run stops with a checkpoint, from which `resume=True` continues, and the results so far are
+        returned, of the status "interrupted". Other values have no effect. An exception ends the run with a checkpoint.
 
     Raises `ValueError` (bad input; nothing is written), `NumericalError` (the last checkpoint is kept), `OSError` (the disk), and
     `KeyboardInterrupt` after Ctrl-C, with the command to resume.
@@ -60,10 +71,12 @@ def run(
         file, text = source(scene)
         return Result(_trackbed.run(file, text, set=assignments(set), **paths(given)))
     with Simulation(scene, set=set, **given) as simulation:
-        callback(simulation)
+        request = callback(simulation)
         while not simulation.finished:
+            if request is STOP:
+                return simulation.stop()
             simulation.step(every)
-            callback(simulation)
+            request = callback(simulation)
         return simulation.finish()
 
 
