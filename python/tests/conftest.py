@@ -22,3 +22,29 @@ def balls():
         )
 
     return build
+
+
+@pytest.fixture
+def column():
+    """Column without lateral strain under the pressure p, and its settlement p h / M."""
+    young, poisson, height, pressure = 50e6, 0.3, 2.0, 80e3
+    scene = trackbed.Scene(
+        title="column",
+        solid={
+            "gravity": False,
+            "block": {
+                "x": {"lines": [0.0, 0.5], "counts": [1]},
+                "y": {"lines": [0.0, 0.5], "counts": [1]},
+                "z": {"lines": [0.0, height], "counts": [2]},
+            },
+            "material": [{"id": 1, "name": "soil", "young": young, "poisson": poisson, "density": 1900}],
+            "support": [{"side": side, "directions": [side[0]]} for side in ["x-", "x+", "y-", "y+", "z-"]],
+            "load": [{"kind": "pressure", "faces_in": [[0, 0, height], [0.5, 0.5, height]], "pressure": pressure}],
+            "quasi_static": {},
+        },
+        probe=[{"name": "top", "at": [0, 0, height]}],
+        time={"end": 1.0, "solid_step": 0.01},
+        output={"frames": 1, "history_interval": 0.01},
+    )
+    modulus = young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson))
+    return scene, pressure * height / modulus
