@@ -46,6 +46,15 @@ def test_stop_keeps_checkpoint(tmp_path, capfd, balls):
     assert (whole.folder / "history.csv").read_bytes() == (rest.folder / "history.csv").read_bytes()
 
 
+def test_stop_called_in_callback(tmp_path, balls):
+    def stop(sim):
+        if sim.windows == 50:
+            sim.stop()
+
+    result = trackbed.run(balls(), tmp_path / "out", callback=stop, every=50)
+    assert result.status == "interrupted" and result.checkpoint
+
+
 @pytest.mark.parametrize("when", ["first", "last"])
 def test_stop_at_ends(tmp_path, when, balls):
     def stop(sim):

@@ -73,7 +73,7 @@ def run(
     with Simulation(scene, set=set, **given) as simulation:
         request = callback(simulation)
         while not simulation.finished:
-            if request is STOP:
+            if request is STOP or simulation.stopped:
                 return simulation.stop()
             simulation.step(every)
             request = callback(simulation)

@@ -75,6 +75,11 @@ class Simulation(_trackbed.Simulation):
         return self._result
 
     @property
+    def stopped(self) -> bool:
+        """Whether `stop` has ended the run."""
+        return self._result is not None and not self.finished
+
+    @property
     def result(self) -> Result:
         """Results of the run, which is finished first unless it was stopped."""
         return self.finish()
