@@ -28,7 +28,7 @@ pub struct Document {
     stored: Vec<IncludedText>,
     /// Whether any text or override may have an earlier name.
     has_earlier_names: bool,
-    /// Whether the text stands in for that of the file, whose lines differ.
+    /// Whether the text replaces the text of the file, so that lines differ.
     in_memory: bool,
 }
 
@@ -309,7 +309,7 @@ impl Document {
         &self.text
     }
 
-    /// Returns the text if it stands in for that of the file.
+    /// Returns the text if it replaces the text of the file.
     pub fn text_in_memory(&self) -> Option<&str> {
         self.in_memory.then_some(&self.text)
     }
