@@ -37,12 +37,13 @@ pub fn execute(command: Command) -> Result<(), Failure> {
             let memory = memory(args.memory.as_deref())?;
             note_earlier_names(&args.scene, &args.set);
             let how = explain::How { memory, strict: args.strict, threads, trial };
-            let report = explain::explain(&args.scene, &args.set, &how)?;
+            let report = explain::explain(&Source::new(&args.scene, &args.set), &how)?;
             print(&if json { report.json() } else { report.text(args.verbose) })
         }
         Command::Check { args, json } => {
             note_earlier_names(&args.scene, &args.set);
-            let report = check::check(&args.scene, &args.set, memory(args.memory.as_deref())?, args.strict)?;
+            let source = Source::new(&args.scene, &args.set);
+            let report = check::check(&source, memory(args.memory.as_deref())?, args.strict)?;
             print(&if json { report.json() } else { report.text(args.verbose) })
         }
         Command::New(args) => new(&args),
@@ -71,8 +72,7 @@ pub fn execute(command: Command) -> Result<(), Failure> {
 
 /// Names that a scene should have; nothing if it cannot be read, which its command reports.
 fn note_earlier_names(scene: &Path, set: &[String]) {
-    let source = Source { file: scene.to_path_buf(), set: set.to_vec() };
-    source.notes().iter().for_each(|note| message::note(note));
+    Source::new(scene, set).notes().iter().for_each(|note| message::note(note));
 }
 
 fn new(args: &NewArgs) -> Result<(), Failure> {
@@ -111,6 +111,7 @@ fn lead(args: RunArgs, ranks: run::Ranked) -> Result<(), Failure> {
         note_earlier_names(&args.scene, &args.set);
     }
     let options = run::Options {
+        text: None,
         out: args.out,
         threads: args.threads,
         device: args.device,

@@ -3,6 +3,7 @@
 mod errors;
 mod link;
 mod run;
+mod scene;
 mod simulation;
 
 use pyo3::prelude::*;
@@ -22,6 +23,7 @@ fn _trackbed(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(run::check, m)?)?;
     m.add_function(wrap_pyfunction!(run::explain, m)?)?;
     m.add_function(wrap_pyfunction!(run::schema, m)?)?;
+    m.add_function(wrap_pyfunction!(scene::read, m)?)?;
     m.add_function(wrap_pyfunction!(command, m)?)
 }
 

@@ -9,6 +9,7 @@ use std::thread;
 use std::time::Duration;
 use trackbed::commands::{check as checking, explain as explaining};
 use trackbed::failure::Failure;
+use trackbed::preview::Source;
 use trackbed::run::{self as running, Interrupt, Options, Outcome, Verbosity};
 use trackbed::scene;
 
@@ -17,6 +18,7 @@ const LOOK: Duration = Duration::from_millis(50);
 /// Converts Python arguments to run options.
 #[expect(clippy::too_many_arguments, reason = "one for each option of the program")]
 pub fn options(
+    text: Option<String>,
     out: Option<PathBuf>,
     set: Vec<String>,
     threads: Option<usize>,
@@ -35,6 +37,7 @@ pub fn options(
         })
     };
     Ok(Options {
+        text,
         out,
         threads,
         set,
@@ -97,11 +100,12 @@ pub fn wait<T: Send>(
 
 /// Runs a scene; the folder of its results.
 #[pyfunction]
-#[pyo3(signature = (scene, out, set, threads, memory, resume, from_run, bed, force, strict, progress))]
+#[pyo3(signature = (scene, text, out, set, threads, memory, resume, from_run, bed, force, strict, progress))]
 #[expect(clippy::too_many_arguments, reason = "one for each option of the program")]
 pub fn run(
     py: Python<'_>,
     scene: PathBuf,
+    text: Option<String>,
     out: Option<PathBuf>,
     set: Vec<String>,
     threads: Option<usize>,
@@ -113,7 +117,7 @@ pub fn run(
     strict: bool,
     progress: bool,
 ) -> PyResult<PathBuf> {
-    let options = options(out, set, threads, memory, resume, from_run, bed, force, strict, progress)?;
+    let options = options(text, out, set, threads, memory, resume, from_run, bed, force, strict, progress)?;
     let interrupt: Interrupt = options.interrupt.clone();
     let (send, reports) = mpsc::channel();
     let worker = thread::spawn(move || {
@@ -130,22 +134,33 @@ pub fn run(
 
 /// What `trackbed check --json` prints.
 #[pyfunction]
-pub fn check(py: Python<'_>, scene: PathBuf, set: Vec<String>, strict: bool) -> PyResult<String> {
-    let report = py.detach(|| checking::check(&scene, &set, None, strict));
+#[pyo3(signature = (scene, text, set, strict))]
+pub fn check(
+    py: Python<'_>,
+    scene: PathBuf,
+    text: Option<String>,
+    set: Vec<String>,
+    strict: bool,
+) -> PyResult<String> {
+    let source = Source { file: scene, text, set };
+    let report = py.detach(|| checking::check(&source, None, strict));
     report.map(|report| report.json()).map_err(|failure| raised(&failure))
 }
 
 /// What `trackbed explain --json` prints.
 #[pyfunction]
+#[pyo3(signature = (scene, text, set, threads, trial))]
 pub fn explain(
     py: Python<'_>,
     scene: PathBuf,
+    text: Option<String>,
     set: Vec<String>,
     threads: Option<usize>,
     trial: f64,
 ) -> PyResult<String> {
     let how = explaining::How { memory: None, strict: false, threads, trial };
-    let report = py.detach(|| explaining::explain(&scene, &set, &how));
+    let source = Source { file: scene, text, set };
+    let report = py.detach(|| explaining::explain(&source, &how));
     report.map(|report| report.json()).map_err(|failure| raised(&failure))
 }
 

@@ -2,13 +2,17 @@
 
 use crate::link::{Goal, Link, Order, Place, Push, Report};
 use crate::run::{Reports, folder, options, wait};
-use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadwriteArray2, PyUntypedArrayMethods};
+use numpy::{
+    AllowTypeChange, Element, PyArray1, PyArray2, PyArrayLike2, PyArrayMethods, PyReadwriteArray2,
+    PyUntypedArrayMethods,
+};
 use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::mpsc::{self, Sender};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
+use trackbed::failure::Failure;
 use trackbed::run::{self as running, Accompanied, Interrupt, Shown};
 use trackbed_dem as dem;
 
@@ -21,6 +25,8 @@ pub struct Simulation {
     worker: Option<JoinHandle<()>>,
     interrupt: Interrupt,
     place: Place,
+    /// Results directory.
+    out: PathBuf,
     /// Set once complete.
     folder: Option<PathBuf>,
 }
@@ -28,11 +34,12 @@ pub struct Simulation {
 #[pymethods]
 impl Simulation {
     #[new]
-    #[pyo3(signature = (scene, out, set, threads, memory, resume, from_run, bed, force, strict, progress))]
+    #[pyo3(signature = (scene, text, out, set, threads, memory, resume, from_run, bed, force, strict, progress))]
     #[expect(clippy::too_many_arguments, reason = "one for each option of the program")]
     fn new(
         py: Python<'_>,
         scene: PathBuf,
+        text: Option<String>,
         out: Option<PathBuf>,
         set: Vec<String>,
         threads: Option<usize>,
@@ -44,7 +51,10 @@ impl Simulation {
         strict: bool,
         progress: bool,
     ) -> PyResult<Simulation> {
-        let mut options = options(out, set, threads, memory, resume, from_run, bed, force, strict, progress)?;
+        let mut options =
+            options(text, out, set, threads, memory, resume, from_run, bed, force, strict, progress)?;
+        let out = running::default_folder(&scene, &options.set);
+        let out = options.out.get_or_insert(out).clone();
         let interrupt = options.interrupt.clone();
         let (orders, received) = mpsc::channel();
         let (send, reports) = mpsc::channel();
@@ -62,6 +72,7 @@ impl Simulation {
             worker: Some(worker),
             interrupt,
             place: Place::default(),
+            out,
             folder: None,
         };
         // While packing, the run saves and stops.
@@ -92,6 +103,12 @@ impl Simulation {
     #[getter]
     fn finished(&self) -> bool {
         self.folder.is_some() || (self.place.windows > 0 && self.place.done >= self.place.windows)
+    }
+
+    /// Results directory, also of a run in progress.
+    #[getter]
+    fn out(&self) -> PathBuf {
+        self.out.clone()
     }
 
     /// Folder of the results, once they are complete.
@@ -130,6 +147,29 @@ impl Simulation {
     /// Stops a run that is not done; a checkpoint is kept, from which it can be resumed.
     fn close(&mut self, py: Python<'_>) {
         self.stop(py);
+    }
+
+    /// Stops the run with a checkpoint, of the first window at the earliest, and writes its results so far: their folder, and the
+    /// message of the stop; no message if the run was complete.
+    fn halt(&mut self, py: Python<'_>) -> PyResult<(PathBuf, Option<String>)> {
+        if self.finished() {
+            return Ok((self.finish(py)?, None));
+        }
+        self.orders.as_ref().ok_or_else(closed)?;
+        self.stop(py);
+        let reports = self.reports.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let ended = reports.try_iter().find_map(|report| match report {
+            Report::Ended(outcome) => Some(outcome),
+            Report::Paused(_) => None,
+        });
+        match ended.ok_or_else(closed)? {
+            Err(Failure::Interrupted(text)) => Ok((self.out.clone(), Some(text))),
+            outcome => {
+                let complete = folder(outcome)?;
+                self.folder = Some(complete.clone());
+                Ok((complete, None))
+            }
+        }
     }
 
     /// Number of bodies: grains and sleepers, those that have not come yet and those that have left included.
@@ -283,6 +323,29 @@ impl Simulation {
         if force != [0.0; 3] {
             pushes.push(Push { body, force });
         }
+        Ok(())
+    }
+
+    /// Applies forces [N], shape (bodies, 3), through the centres of mass in every step from now on, in place of all earlier ones.
+    fn apply_forces(&self, forces: PyArrayLike2<'_, f64, AllowTypeChange>) -> PyResult<()> {
+        let forces = forces.as_array();
+        let count = self.grains(|model, _| model.body_count())?;
+        if forces.shape() != [count, 3] {
+            let found = forces.shape();
+            return Err(PyValueError::new_err(format!(
+                "forces: found shape {found:?}, expected ({count}, 3)"
+            )));
+        }
+        let rows = forces.rows().into_iter().map(|row| [row[0], row[1], row[2]]).enumerate();
+        let all: Vec<Push> =
+            rows.filter(|(_, force)| *force != [0.0; 3]).map(|(body, force)| Push { body, force }).collect();
+        if let Some(push) = all.iter().find(|push| !push.force.iter().all(|f| f.is_finite())) {
+            return Err(PyValueError::new_err(format!(
+                "forces: found {:?} on body {}, expected finite numbers",
+                push.force, push.body
+            )));
+        }
+        *self.link.pushes() = all;
         Ok(())
     }
 

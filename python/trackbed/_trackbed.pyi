@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import Any, Optional, Sequence, Union
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Self, disjoint_base
 
-__all__ = ["NumericalError", "Simulation", "__version__", "check", "command", "explain", "run", "schema"]
+__all__ = ["NumericalError", "Simulation", "__version__", "check", "command", "explain", "read", "run", "schema"]
 
 __version__: str
 
@@ -25,6 +25,7 @@ class Simulation:
     def __new__(
         cls,
         scene: _Path,
+        text: Optional[str],
         out: Optional[_Path],
         set: Sequence[str],
         threads: Optional[int],
@@ -49,6 +50,9 @@ class Simulation:
     def finished(self) -> bool:
         """Whether the last window is done. The results are complete after `finish`."""
     @property
+    def out(self) -> Path:
+        """Results directory, also of a run in progress."""
+    @property
     def folder(self) -> Optional[Path]:
         """Folder of the results, once they are complete."""
     def step(self, windows: int = 1) -> None:
@@ -60,6 +64,9 @@ class Simulation:
         not in memory any more."""
     def close(self) -> None:
         """Stops a run that is not done; a checkpoint is kept, from which it can be resumed."""
+    def halt(self) -> tuple[Path, Optional[str]]:
+        """Stops the run with a checkpoint, of the first window at the earliest, and writes its results so far: their folder, and the
+        message of the stop; no message if the run was complete."""
     def __len__(self) -> int:
         """Number of bodies: grains and sleepers, those that have not come yet and those that have left included."""
     def positions(self, out: Optional[_Array] = None) -> _Array:
@@ -88,11 +95,14 @@ class Simulation:
     def apply_force(self, body: int, force: Union[Sequence[float], _Array]) -> None:
         """Pushes a body with a force [N] through its centre of mass in every step from now on; a further call replaces it, zero takes it
         away."""
+    def apply_forces(self, forces: ArrayLike) -> None:
+        """Applies forces [N], shape (bodies, 3), through the centres of mass in every step from now on, in place of all earlier ones."""
     def clear_forces(self) -> None:
         """Takes all applied forces away."""
 
 def run(
     scene: _Path,
+    text: Optional[str],
     out: Optional[_Path],
     set: Sequence[str],
     threads: Optional[int],
@@ -104,7 +114,8 @@ def run(
     strict: bool,
     progress: bool,
 ) -> Path: ...
-def check(scene: _Path, set: Sequence[str], strict: bool) -> str: ...
-def explain(scene: _Path, set: Sequence[str], threads: Optional[int], trial: float) -> str: ...
+def check(scene: _Path, text: Optional[str], set: Sequence[str], strict: bool) -> str: ...
+def explain(scene: _Path, text: Optional[str], set: Sequence[str], threads: Optional[int], trial: float) -> str: ...
 def schema() -> str: ...
+def read(file: _Path) -> tuple[str, dict[str, Any]]: ...
 def command(words: Sequence[str]) -> int: ...

@@ -2,24 +2,35 @@
 
 from __future__ import annotations
 
+import csv
+import enum
 import json
 import os
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Union
+from typing import Any, Final, Union
 
 from . import _trackbed
 from .overrides import Overrides, assignments
+from .program import arguments, run_program
 from .results import Result
+from .scene import Scene, SceneLike, source
 from .simulation import Simulation
 
 Folder = Union[str, "os.PathLike[str]"]
 
 
+class Stop(enum.Enum):
+    """Request of a callback."""
+
+    STOP = "stop"
+
+
+STOP: Final = Stop.STOP
+
+
 def run(
-    scene: Folder,
+    scene: SceneLike,
     out: Folder | None = None,
     *,
     set: Overrides = None,
@@ -31,12 +42,12 @@ def run(
     force: bool = False,
     strict: bool = False,
     progress: bool = False,
-    callback: Callable[[Simulation], Any] | None = None,
+    callback: Callable[[Simulation], object] | None = None,
     every: int = 1,
 ) -> Result:
     """Runs a scene and returns its results.
 
-    scene: the scene file.
+    scene: a `Scene`, a mapping of its tables, or a scene file.
     out: folder of the results; default `results/<name>`, as of the program.
     set: overrides of keys: `{"track.load.cycles": 10}`, or `["track.load.cycles=10"]`; `None` as a value takes a key away.
     threads: default all cores. The results have the same bits for any number.
@@ -46,22 +57,26 @@ def run(
     force: replace what is in `out`.
     strict: refuse values that are not plausible.
     progress: show the program's progress on standard error.
-    callback: called with the paused `Simulation` before the first window and after each `every` windows, the last included. An exception
-        in it ends the run with a checkpoint.
+    callback: called with the paused `Simulation` before the first window and after each `every` windows, the last included. If it
+        returns `trackbed.STOP`, the run stops with a checkpoint, from which `resume=True` continues, and the results so far are
+        returned, of the status "interrupted". Other values have no effect. An exception ends the run with a checkpoint.
 
     Raises `ValueError` (bad input; nothing is written), `NumericalError` (the last checkpoint is kept), `OSError` (the disk), and
     `KeyboardInterrupt` after Ctrl-C, with the command to resume.
     """
-    options: dict[str, Any] = dict(
+    given: dict[str, Any] = dict(
         out=out, threads=threads, memory=memory, resume=resume, from_run=from_run, bed=bed, force=force, strict=strict, progress=progress
     )
     if callback is None:
-        return Result(_trackbed.run(os.fspath(scene), set=assignments(set), **paths(options)))
-    with Simulation(scene, set=set, **options) as simulation:
-        callback(simulation)
+        file, text = source(scene)
+        return Result(_trackbed.run(file, text, set=assignments(set), **paths(given)))
+    with Simulation(scene, set=set, **given) as simulation:
+        request = callback(simulation)
         while not simulation.finished:
+            if request is STOP or simulation.stopped:
+                return simulation.stop()
             simulation.step(every)
-            callback(simulation)
+            request = callback(simulation)
         return simulation.finish()
 
 
@@ -70,16 +85,16 @@ def paths(options: dict[str, Any]) -> dict[str, Any]:
     return {name: os.fspath(value) if isinstance(value, os.PathLike) else value for name, value in options.items()}
 
 
-def check(scene: Folder, *, set: Overrides = None, strict: bool = False) -> dict[str, Any]:
+def check(scene: SceneLike, *, set: Overrides = None, strict: bool = False) -> dict[str, Any]:
     """Reads and resolves a scene without running it, and reports what would happen, by name: `title`, `findings` (values that are not
     plausible), `solid`, `grains`, `coupling` and the `lines` that `trackbed check` prints. Raises `ValueError` for what a run would refuse."""
-    report: dict[str, Any] = json.loads(_trackbed.check(os.fspath(scene), assignments(set), strict))
+    report: dict[str, Any] = json.loads(_trackbed.check(*source(scene), assignments(set), strict))
     return report
 
 
-def explain(scene: Folder, *, set: Overrides = None, threads: int | None = None, trial: float = 10.0) -> dict[str, Any]:
+def explain(scene: SceneLike, *, set: Overrides = None, threads: int | None = None, trial: float = 10.0) -> dict[str, Any]:
     """The report of `check` with the stages of a run, its memory, and `time`: seconds by stage, measured by a trial run of `trial` seconds."""
-    report: dict[str, Any] = json.loads(_trackbed.explain(os.fspath(scene), assignments(set), threads, trial))
+    report: dict[str, Any] = json.loads(_trackbed.explain(*source(scene), assignments(set), threads, trial))
     return report
 
 
@@ -93,15 +108,15 @@ def study(
     file: Folder, out: Folder | None = None, *, jobs: int | None = None, threads: int | None = None, resume: bool = False, force: bool = False
 ) -> list[dict[str, str]]:
     """Carries out a study as `trackbed study` does, every run a process of its own; the rows of its table (`study.csv`) by column."""
-    import csv
-
     folder = Path(out) if out is not None else Path("results") / Path(file).stem
-    words = [sys.executable, "-m", "trackbed", "study", os.fspath(file), "--out", os.fspath(folder), "--quiet"]
-    words += [word for name, value in (("--jobs", jobs), ("--threads", threads)) if value is not None for word in (name, str(value))]
-    words += [name for name, value in (("--resume", resume), ("--force", force)) if value]
-    done = subprocess.run(words, capture_output=True, text=True)
-    if done.returncode != 0:
-        kind = {2: ValueError, 3: _trackbed.NumericalError}.get(done.returncode, OSError)
-        raise kind(done.stderr.strip().removeprefix("error: "))
+    given = arguments({"jobs": jobs, "threads": threads, "resume": resume, "force": force, "quiet": True})
+    run_program("study", file, "--out", folder, *given)
     with open(folder / "study.csv", newline="", encoding="utf-8") as rows:
         return list(csv.DictReader(rows))
+
+
+def new(template: str, folder: Folder | None = None) -> Scene:
+    """Writes a template of the program, such as "footing", with its files into a folder (default of its name); returns its scene."""
+    folder = Path(template if folder is None else folder)
+    run_program("new", template, folder)
+    return Scene.load(folder / "scene.toml")

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+import sys
 from types import TracebackType
 from typing import Any, Union
 
 from . import _trackbed
 from .overrides import Overrides, assignments
 from .results import Result
+from .scene import SceneLike, source
 
 
 class Simulation(_trackbed.Simulation):
@@ -33,7 +35,7 @@ class Simulation(_trackbed.Simulation):
 
     def __new__(
         cls,
-        scene: Union[str, "os.PathLike[str]"],
+        scene: SceneLike,
         out: Union[str, "os.PathLike[str]", None] = None,
         *,
         set: Overrides = None,
@@ -47,12 +49,14 @@ class Simulation(_trackbed.Simulation):
         progress: bool = False,
     ) -> Simulation:
         self = super().__new__(
-            cls, scene, out, assignments(set), threads, memory, resume, from_run, bed, force, strict, progress
+            cls, *source(scene), out, assignments(set), threads, memory, resume, from_run, bed, force, strict, progress
         )
         self._result = None
+        self._progress = progress
         return self
 
     _result: Result | None
+    _progress: bool
 
     def finish(self) -> Result:
         """Completes the run and returns its results; the state is then no longer in memory."""
@@ -60,9 +64,24 @@ class Simulation(_trackbed.Simulation):
             self._result = Result(super().finish())
         return self._result
 
+    def stop(self) -> Result:
+        """Stops the run with a checkpoint, from which `resume=True` continues, and returns the results so far, of the status
+        "interrupted"; a complete run is finished. The state is then no longer in memory."""
+        if self._result is None:
+            folder, message = self.halt()
+            self._result = Result(folder)
+            if message is not None and self._progress:
+                print(message, file=sys.stderr)
+        return self._result
+
+    @property
+    def stopped(self) -> bool:
+        """Whether `stop` has ended the run."""
+        return self._result is not None and not self.finished
+
     @property
     def result(self) -> Result:
-        """Results of the run, which is finished first."""
+        """Results of the run, which is finished first unless it was stopped."""
         return self.finish()
 
     def energy(self) -> dict[str, float]:

@@ -1,7 +1,6 @@
 //! `trackbed check`: resolves and reports a scene.
 
 use serde_json::{Value, json};
-use std::path::Path;
 use trackbed_dem as dem;
 use trackbed_input::model::Job;
 use trackbed_input::model::exchange::{self, CouplingPart, Windows};
@@ -72,17 +71,9 @@ impl Report {
 ///
 /// # Errors
 /// Input errors of a run.
-pub fn check(scene: &Path, set: &[String], memory: Option<u64>, strict: bool) -> Result<Report, Failure> {
-    let (document, job) = read(scene, set)?;
+pub fn check(source: &Source, memory: Option<u64>, strict: bool) -> Result<Report, Failure> {
+    let (document, job) = source.resolve()?;
     report(&document, &job, memory, strict)
-}
-
-/// Resolves a scene with overrides.
-///
-/// # Errors
-/// Input errors.
-pub fn read(scene: &Path, set: &[String]) -> Result<(Document, Job), Failure> {
-    Source { file: scene.to_path_buf(), set: set.to_vec() }.resolve()
 }
 
 /// Reports a scene.

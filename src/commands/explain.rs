@@ -2,11 +2,11 @@
 
 use super::check::{self, Report};
 use std::error::Error;
-use std::path::Path;
 use std::time::{Duration, Instant};
 use trackbed_dem as dem;
 use trackbed_input::model::grains::{GrainsPart, refused};
 use trackbed_io::failure::Failure;
+use trackbed_post::preview::Source;
 use trackbed_run::estimate::Estimate;
 use trackbed_run::stages::{self, Stage};
 use trackbed_run::{self as run, size};
@@ -32,12 +32,12 @@ pub struct How {
 ///
 /// # Errors
 /// Input errors.
-pub fn explain(scene: &Path, set: &[String], how: &How) -> Result<Report, Failure> {
+pub fn explain(source: &Source, how: &How) -> Result<Report, Failure> {
     if !(0.0..=LONGEST).contains(&how.trial) {
         let found = how.trial;
         return Err(Failure::Input(format!("--trial: found {found}, expected 0 to {LONGEST:.0} seconds")));
     }
-    let (document, job) = check::read(scene, set)?;
+    let (document, job) = source.resolve()?;
     let mut report = check::report(&document, &job, how.memory, how.strict)?;
     let names: Vec<_> = stages::of(&job).filter_map(Stage::name).collect();
     report.add(format!("stages: {}", names.join(", ")));
@@ -53,7 +53,7 @@ pub fn explain(scene: &Path, set: &[String], how: &How) -> Result<Report, Failur
     if how.trial > 0.0 {
         let pool = run::thread_pool(how.threads)?;
         let budget = Duration::from_secs_f64(how.trial);
-        match pool.install(|| Estimate::of(scene, set, &job, how.threads, budget)) {
+        match pool.install(|| Estimate::of(&document, &source.set, &job, how.threads, budget)) {
             Ok(estimate) => report.estimate(&estimate),
             Err(failure) => report.add(format!("no estimate of the run time: trial run failed: {failure}")),
         }

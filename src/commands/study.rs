@@ -6,6 +6,7 @@ use crate::study;
 use std::path::Path;
 use trackbed_io::failure::Failure;
 use trackbed_io::message;
+use trackbed_post::preview::Source;
 use trackbed_run::Interrupt;
 
 /// Runs a study and prints its table, or scores predictions.
@@ -29,7 +30,7 @@ pub fn study(args: StudyArgs) -> Result<(), Failure> {
         quiet,
         interrupt: Interrupt::on_signals("the active runs have written checkpoints")?,
     };
-    let check = |scene: &Path, set: &[String]| check::check(scene, set, None, false).map(drop);
+    let check = |scene: &Path, set: &[String]| check::check(&Source::new(scene, set), None, false).map(drop);
     let study::Finished { text, failure } = study::execute(&file, &options, &check)?;
     // Tables are saved, so output may fail.
     if !quiet && let Err(failure) = output::print(&text) {

@@ -36,7 +36,7 @@ pub fn view(args: &ViewArgs) -> Result<(), Failure> {
 /// Neither of them; overrides of results.
 pub(super) fn scene(path: &Path, set: &[String]) -> Result<Option<Source>, Failure> {
     if let Some(file) = preview::scene_file(path) {
-        let source = Source { file, set: set.to_vec() };
+        let source = Source::new(&file, set);
         source.notes().iter().for_each(|note| message::note(note));
         return Ok(Some(source));
     }
@@ -85,8 +85,7 @@ fn serve_scene(args: &ViewArgs, source: Source) -> Result<(), Failure> {
     if !source.file.is_file() {
         source.document()?;
     }
-    let live =
-        Live::new(source, |source| Ok(check::check(&source.file, &source.set, None, false)?.text(false)));
+    let live = Live::new(source, |source| Ok(check::check(source, None, false)?.text(false)));
     let (listener, port) = begin(args)?;
     view::server::serve_scene(listener, port, live)
 }

@@ -73,6 +73,8 @@ use trackbed_io::message;
 /// Run options.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
+    /// Scene text in place of the file's.
+    pub text: Option<String>,
     /// Results directory; default `results/<name>`.
     pub out: Option<PathBuf>,
     /// Threads; default all cores.
@@ -117,7 +119,7 @@ pub enum Outcome {
 /// # Errors
 /// Input errors, before any output; numerical failures, interrupts.
 pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
-    let mut document = Document::open(scene)?;
+    let mut document = Document::open_or(scene, options.text.as_deref())?;
     document.set_all(&options.set)?;
     let parsed = model::read_scene(&document)?;
     let pool = thread_pool(options.threads)?;
@@ -170,7 +172,10 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
             ..RunRecord::default()
         };
         let summary = Summary { run: record, dir: dir.clone(), ..Summary::default() };
-        let command = origin::resume_command(scene, &dir, &options.set, source);
+        let command = match options.text {
+            Some(_) => origin::resume_call(&dir),
+            None => origin::resume_command(scene, &dir, &options.set, source),
+        };
         let (interrupt, interval) = (options.interrupt.clone(), job.output.checkpoint);
         let set_down = OnceCell::new();
         let run = Run {

@@ -35,6 +35,11 @@ pub fn resume_command(scene: &Path, dir: &Path, set: &[String], from: Option<Sou
     command
 }
 
+/// Returns the resume call of a scene built in Python.
+pub fn resume_call(dir: &Path) -> String {
+    format!("trackbed.run(scene, {:?}, resume=True)", dir.display().to_string())
+}
+
 impl Source<'_> {
     /// Formats as command-line options.
     pub fn arguments(&self) -> String {

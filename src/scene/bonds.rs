@@ -16,6 +16,7 @@ pub struct BondTable {
     /// Surface distance of joined spheres [m]; or `pairs`, neither for stones, floes; ≥ 0, ≤ ten largest radii.
     pub gap: Option<Quantity<Length>>,
     /// CSV file of grain index pairs, from 0 over all groups; or `gap`; not with `deposition.level`.
+    #[schemars(extend("format" = "path"))]
     pub pairs: Option<PathBuf>,
     /// Cement disc with moments; or `contact_point`, `direct`, `face`.
     pub parallel: Option<Parallel>,

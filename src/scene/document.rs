@@ -28,6 +28,8 @@ pub struct Document {
     stored: Vec<IncludedText>,
     /// Whether any text or override may have an earlier name.
     has_earlier_names: bool,
+    /// Whether the text replaces the text of the file, so that lines differ.
+    in_memory: bool,
 }
 
 impl Document {
@@ -51,6 +53,15 @@ impl Document {
         Document::with_included(file, text, Vec::new())
     }
 
+    /// Opens `file`, or `text` in its place: paths are relative to `file`, errors have no lines.
+    ///
+    /// # Errors
+    /// As [`Document::open`].
+    pub fn open_or(file: &Path, text: Option<&str>) -> Result<Document, SceneError> {
+        let Some(text) = text else { return Document::open(file) };
+        Ok(Document { in_memory: true, ..Document::parse(file, text.into())? })
+    }
+
     /// Parses `text` as the content of `file`, with stored texts of included files.
     ///
     /// # Errors
@@ -69,6 +80,7 @@ impl Document {
             given: Vec::new(),
             stored,
             has_earlier_names: false,
+            in_memory: false,
         };
         document.include()?;
         Ok(document)
@@ -219,7 +231,7 @@ impl Document {
         let hidden = |path: &str| self.overrides.iter().any(|(key, _)| is_below(path, key));
         let notes = done.iter().filter_map(|Rename { path, span, old, new }| match self.line(span) {
             Some((file, line)) if !hidden(path) => {
-                Some(SceneError { line: Some(line), ..SceneError::whole(file, path, old, new) }.to_string())
+                Some(SceneError { line, ..SceneError::whole(file, path, old, new) }.to_string())
             }
             Some(_) => None,
             None => Some(override_error(path, old, new).to_string()),
@@ -246,7 +258,7 @@ impl Document {
         let overridden = self.overrides.iter().any(|(key, _)| is_below(path, key) || made(key));
         let (file, line) = match self.locate(path) {
             _ if overridden => (Path::new("--set"), None),
-            Some((file, line)) => (file, Some(line)),
+            Some((file, line)) => (file, line),
             None => (self.file.as_path(), None),
         };
         SceneError { file: file.to_path_buf(), line, key: path.to_string(), problem, remedy: None }
@@ -297,6 +309,11 @@ impl Document {
         &self.text
     }
 
+    /// Returns the text if it replaces the text of the file.
+    pub fn text_in_memory(&self) -> Option<&str> {
+        self.in_memory.then_some(&self.text)
+    }
+
     /// Returns the command-line overrides (key path, value).
     pub fn overrides(&self) -> &[(String, String)] {
         &self.overrides
@@ -339,16 +356,17 @@ impl Document {
         self.included.last().map_or(self.text.len(), Included::end)
     }
 
-    fn line(&self, span: &Range<usize>) -> Option<(&Path, usize)> {
+    fn line(&self, span: &Range<usize>) -> Option<(&Path, Option<usize>)> {
         if span.start < self.text.len() {
-            return Some((&self.file, line_of(&self.text, span.start)));
+            let line = (!self.in_memory).then(|| line_of(&self.text, span.start));
+            return Some((&self.file, line));
         }
         let file = self.included.iter().find(|file| file.holds(span.start))?;
-        Some((&file.file, file.line(span.start)))
+        Some((&file.file, Some(file.line(span.start))))
     }
 
     /// File and line of the deepest existing part of `path`.
-    fn locate(&self, path: &str) -> Option<(&Path, usize)> {
+    fn locate(&self, path: &str) -> Option<(&Path, Option<usize>)> {
         let tree = self.tree();
         let mut span = 0..0;
         let mut table = Some(tree.get_ref());

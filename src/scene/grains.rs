@@ -16,11 +16,13 @@ pub struct Grains {
     /// Name of a `[[material]]` with density.
     pub material: String,
     /// Stone library; with `"clump"`, `"bonded"`, `"polyhedron"`; not with `floes`, `frustum`.
+    #[schemars(extend("format" = "path"))]
     pub library: Option<PathBuf>,
     /// Spheres `[[x, y, z, r], …]` [m]; or another source; > 0 (r).
     pub spheres: Option<Vec<[Quantity<Length>; 4]>>,
     /// CSV file as of `output.packing`; or another source; columns `x, y, z, r` or `x, y, z, qw, qx, qy, qz, scale, stone` (disks:
     /// diameter, 0).
+    #[schemars(extend("format" = "path"))]
     pub packing: Option<PathBuf>,
     /// Regular packing of spheres; or another source.
     pub lattice: Option<LatticeFill>,
@@ -100,6 +102,7 @@ pub enum GrainShape {
 #[serde(deny_unknown_fields)]
 pub struct GradationSource {
     /// CSV file: `standard`, `grade`, `sieve_mm`, `passing_lo_pct`, `passing_hi_pct`; limits averaged.
+    #[schemars(extend("format" = "path"))]
     pub file: PathBuf,
     /// Value of that column, without regard to blanks, dashes, case.
     pub standard: String,
@@ -205,6 +208,7 @@ pub struct Region {
     /// Cylinder or cut cone; or `box`.
     pub cone: Option<ConeRegion>,
     /// File of a closed surface, or mesh; or `box`.
+    #[schemars(extend("format" = "path"))]
     pub surface: Option<PathBuf>,
     /// Factor on coordinates; default 1; > 0; with `surface`.
     pub scale: Option<f64>,

@@ -38,6 +38,7 @@ pub struct History {
     /// Points `[[time, factor], …]`, ascending [s]; or `file`; with `"table"`.
     pub points: Option<Vec<(Quantity<Time>, f64)>>,
     /// CSV file `time, factor`, header optional (`time [ms]`) [s]; or `points`; with `"table"`.
+    #[schemars(extend("format" = "path"))]
     pub file: Option<PathBuf>,
     /// Time before which it is 0 [s]; default 0.
     pub start: Option<Quantity<Time>>,

@@ -20,7 +20,7 @@ pub fn schema() -> Value {
     schema["properties"][include::KEY] = json!({
         "description": "Files with tables used where the scene has none; paths relative to it.",
         "type": "array",
-        "items": { "type": "string" },
+        "items": { "type": "string", "format": "path" },
     });
     // Other keys of a material may come from an included material of that name.
     let required = std::mem::replace(&mut schema["$defs"]["GrainMaterial"]["required"], json!(["name"]));

@@ -294,6 +294,21 @@ mod tests {
     }
 
     #[test]
+    fn text_in_memory_has_no_lines() {
+        let file = Path::new("folder/x.toml");
+        let document = Document::open_or(file, Some(TEXT)).unwrap();
+        assert_eq!(
+            document.error("walls", "a", "b").to_string(),
+            "folder/x.toml: walls: found a, expected b"
+        );
+        assert_eq!(
+            (document.resolve(Path::new("mesh.inp")), document.text_in_memory()),
+            ("folder/mesh.inp".into(), Some(TEXT))
+        );
+        assert!(Document::open_or(file, None).is_err());
+    }
+
+    #[test]
     fn values_are_checked() {
         with_scene(|scene| {
             let wall = scene.row("walls", &scene.walls, 1);

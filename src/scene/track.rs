@@ -134,6 +134,7 @@ pub struct SeatLoad {
     /// Fall time [s]; default stays; > 0; with `"ramp"`.
     pub fall: Option<Quantity<Time>>,
     /// CSV file `time, force` [s, N], header optional; for `"train"` a table; with `"history"`, `"train"`.
+    #[schemars(extend("format" = "path"))]
     pub file: Option<PathBuf>,
     /// Factor on the force, not 0; default 1; with `"history"`.
     pub factor: Option<f64>,

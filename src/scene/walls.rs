@@ -28,6 +28,7 @@ pub struct Wall {
     /// Vertex indices `[[a, b, c], …]`, from 0; with `"triangles"`.
     pub triangles: Option<Vec<[u32; 3]>>,
     /// File of a surface, terrain or mesh; with `"mesh"`.
+    #[schemars(extend("format" = "path"))]
     pub file: Option<PathBuf>,
     /// Factor on file lengths; default 1; > 0; with `"mesh"`.
     pub scale: Option<f64>,

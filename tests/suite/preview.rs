@@ -12,7 +12,7 @@ fn shipped_scenes_have_all_objects() {
     let mut used = vec![0; KINDS.len()];
     for file in inputs() {
         let begun = Instant::now();
-        let source = Source { file: file.clone(), set: Vec::new() };
+        let source = Source::new(&file, &[]);
         let (document, job) = source.resolve().unwrap();
         let resolved = begun.elapsed();
         let preview = Preview::new(&document, &job).unwrap();
@@ -178,7 +178,7 @@ fn page_follows_file_and_shows_errors() {
 fn warnings_name_their_objects() {
     let folder = Folder::new("preview_warnings");
     let file = folder.write("scene.toml", &SCENE.replace("\"20 MPa\"", "20.0"));
-    let (document, job) = Source { file, set: Vec::new() }.resolve().unwrap();
+    let (document, job) = Source::new(&file, &[]).resolve().unwrap();
     let preview = Preview::new(&document, &job).unwrap();
     let found = preview.warnings.iter().find(|r| r.text.starts_with("solid.material.0.young: ")).unwrap();
     assert!(found.serious);

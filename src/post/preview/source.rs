@@ -27,21 +27,28 @@ pub fn scene_file(path: &Path) -> Option<PathBuf> {
 }
 
 /// Scene file with overrides.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Source {
     /// Scene file.
     pub file: PathBuf,
+    /// Text in place of the file's.
+    pub text: Option<String>,
     /// Overrides.
     pub set: Vec<String>,
 }
 
 impl Source {
+    /// Scene file with overrides.
+    pub fn new(file: &Path, set: &[String]) -> Source {
+        Source { file: file.into(), text: None, set: set.into() }
+    }
+
     /// Opens the file with overrides.
     ///
     /// # Errors
     /// Input errors.
     pub fn document(&self) -> Result<Document, Failure> {
-        let mut document = Document::open(&self.file)?;
+        let mut document = Document::open_or(&self.file, self.text.as_deref())?;
         document.set_all(&self.set)?;
         Ok(document)
     }

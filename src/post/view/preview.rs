@@ -257,7 +257,7 @@ mod tests {
         let dir = folder("live");
         let file = dir.join("scene.toml");
         std::fs::write(&file, "x = \n").unwrap();
-        let live = Live::new(Source { file: file.clone(), set: Vec::new() }, |_| Ok(String::new()));
+        let live = Live::new(Source::new(&file, &[]), |_| Ok(String::new()));
         let version = live.version();
         let (first, reading) = errors(&live);
         assert!(first[0].contains("scene.toml:1: syntax") && !reading, "{first:?}");

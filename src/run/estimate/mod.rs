@@ -9,7 +9,6 @@ use crate::stages::{RUN, SETTLING, longest};
 use column::Column;
 use rehearsal::{Rehearsal, rehearse};
 use serde::Serialize;
-use std::path::Path;
 use std::time::Duration;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
@@ -17,6 +16,7 @@ use trackbed_input::model::Job;
 use trackbed_input::model::exchange::Windows;
 use trackbed_input::model::grains::{GrainsPart, with_sleepers};
 use trackbed_input::model::solid::Analysis;
+use trackbed_input::scene::Document;
 use trackbed_io::failure::Failure;
 
 const SETTLE: u32 = 15;
@@ -63,7 +63,7 @@ impl Estimate {
     /// # Errors
     /// Failures of the trial run; no stable time step.
     pub fn of(
-        scene: &Path,
+        document: &Document,
         set: &[String],
         job: &Job,
         threads: Option<usize>,
@@ -73,7 +73,7 @@ impl Estimate {
         if let Some(stages) = solid::statics(job, count) {
             return Ok(Estimate { stages, threads: count });
         }
-        let rehearsed = rehearse(scene, set, job, threads, budget)?;
+        let rehearsed = rehearse(document, set, job, threads, budget)?;
         let stages = if rehearsed.whole { Vec::new() } else { left(job, &rehearsed, count, budget)? };
         let measured = rehearsed.done.into_iter();
         let measured = measured.map(|(name, seconds)| StageTime { name, seconds, known: Known::Measured });

@@ -6,12 +6,13 @@ use crate::checkpoint_store::Trace;
 use crate::stages::{self, COMPACTED, RUN, SETTLING};
 use crate::{Interrupt, Options, Outcome, Verbosity};
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{PoisonError, mpsc};
 use std::thread;
 use std::time::{Duration, Instant};
 use trackbed_input::model::Job;
+use trackbed_input::scene::Document;
 use trackbed_io::failure::Failure;
 
 /// Budgets up to the main loop with growth.
@@ -52,7 +53,7 @@ pub struct Rehearsal {
 /// # Errors
 /// Failures of the run; temporary directory not writable.
 pub fn rehearse(
-    scene: &Path,
+    document: &Document,
     set: &[String],
     job: &Job,
     threads: Option<usize>,
@@ -92,6 +93,7 @@ pub fn rehearse(
     });
     let timer = timer.map_err(Failure::thread)?;
     let options = Options {
+        text: document.text_in_memory().map(String::from),
         out: Some(folder.0.clone()),
         threads,
         set: set.to_vec(),
@@ -99,7 +101,7 @@ pub fn rehearse(
         verbosity: Verbosity::Quiet,
         ..Options::default()
     };
-    let outcome = crate::run(scene, &options);
+    let outcome = crate::run(document.file(), &options);
     // Wall time includes other programs.
     let (elapsed, share) = (clock.seconds(), clock.share());
     drop(ended);

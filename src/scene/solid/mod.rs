@@ -27,12 +27,16 @@ use trackbed_io::read::ListLayout;
 #[serde(deny_unknown_fields)]
 pub struct Solid {
     /// Mesh file (`.cdb`, `.msh`, `.inp`, `.vtu`, `.vtk`), or directory of the three lists; or `nodes`, `block`.
+    #[schemars(extend("format" = "path"))]
     pub mesh: Option<PathBuf>,
     /// Node list `id x y z` [m]; or `mesh`.
+    #[schemars(extend("format" = "path"))]
     pub nodes: Option<PathBuf>,
     /// Element list `id material n1 … n20`, SOLID186 order; with `nodes`.
+    #[schemars(extend("format" = "path"))]
     pub elements: Option<PathBuf>,
     /// Constraint list `node direction value` (1, 2, 3, `UX`, `UY`, `UZ`, `ALL`; value 0 if absent) [m]; default none; with `nodes`.
+    #[schemars(extend("format" = "path"))]
     pub constraints: Option<PathBuf>,
     /// Factor from file lengths to metres, displacements too; default 1; > 0 (0.001 for mm).
     pub scale: Option<f64>,
