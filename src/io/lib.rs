@@ -8,6 +8,7 @@ pub mod failure;
 pub mod guard;
 pub mod mesh_tools;
 pub mod message;
+pub mod plot;
 pub mod progress;
 pub mod read;
 pub mod replaced;

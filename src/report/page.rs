@@ -1,11 +1,11 @@
 //! HTML page, self-contained and well-formed XML.
 //!
-//! [`Markup`] escapes all text. [`PreEscaped`] is only for program constants.
+//! [`Markup`] escapes all text. [`PreEscaped`] is only for program constants and plots, which escape their text.
 
 use super::quantity::{Scale, exact, number, scale, with_unit};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::path::{Path, PathBuf};
-use trackbed_io::write::svg::minus;
+use trackbed_io::plot::minus;
 
 /// Section of the page.
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
 //! Readable numbers: SI prefixes, four or five digits.
 
-use trackbed_io::write::svg::minus;
+use trackbed_io::plot::minus;
 
 /// Prefixed unit with factor from SI.
 #[derive(Clone, Debug, PartialEq)]

@@ -334,7 +334,7 @@ fn write_files(plan: &Plan, store: &Store, outcome: &Outcome, analysis: &Analysi
         return Ok(());
     }
     store::write(&dir.join("sensitivity.csv"), &csv(table::sensitivities(analysis))?)?;
-    let plots: Vec<_> = figure::all(analysis).iter().map(|f| (f.title.clone(), f.file())).collect();
+    let plots: Vec<_> = figure::all(analysis).into_iter().map(|f| (f.title, f.file)).collect();
     store.write_plots(&plots)
 }
 

@@ -143,7 +143,7 @@ fn targets(analysis: &Analysis) -> Option<Section> {
 }
 
 fn sensitivity(analysis: &Analysis) -> Option<Section> {
-    let figures = (0..analysis.results.len()).filter_map(|q| Some(figure::tornado(analysis, q)?.html()));
+    let figures = (0..analysis.results.len()).filter_map(|q| Some(figure::tornado(analysis, q)?.html));
     let notes = summary::notes(analysis).into_iter().map(|note| paragraph(&format!("{note}.")));
     let table = html_of(&summary::sensitivities(analysis));
     Section::new("sensitivity", "Sensitivity", joined([plots(figures), table, joined(notes)]))
@@ -151,7 +151,7 @@ fn sensitivity(analysis: &Analysis) -> Option<Section> {
 
 fn responses(analysis: &Analysis) -> Option<Section> {
     let pairs = (0..analysis.results.len()).flat_map(|q| (0..analysis.factors.len()).map(move |j| (q, j)));
-    let figures = pairs.filter_map(|(q, j)| Some(figure::response(analysis, q, j)?.html()));
+    let figures = pairs.filter_map(|(q, j)| Some(figure::response(analysis, q, j)?.html));
     Section::new("responses", "Responses", plots(figures))
 }
 

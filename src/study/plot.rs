@@ -3,10 +3,10 @@
 use super::file::Norm;
 use super::outcome::{Outcome, cpu};
 use super::plan::Plan;
-use trackbed_io::write::scatter::{Group, Mark, ScatterPlot};
+use trackbed_io::plot::{Axis, Curve, Level, Plot, Style};
 
 /// Draws the plot; points are numbered like table rows.
-pub fn pareto(plan: &Plan, outcome: &Outcome) -> ScatterPlot {
+pub fn pareto(plan: &Plan, outcome: &Outcome) -> Plot {
     // Plain errors are clearer than ratios.
     let plain = plan.quantities.iter().all(|q| q.norm == Norm::Relative && q.tolerance == plan.tolerance);
     let unit = if plain { plan.tolerance } else { 1.0 };
@@ -29,24 +29,23 @@ pub fn pareto(plan: &Plan, outcome: &Outcome) -> ScatterPlot {
     let mut front: Vec<(usize, [f64; 2])> =
         outcome.front.iter().filter_map(|k| placed.iter().find(|(other, _)| other == k).copied()).collect();
     front.retain(|(k, _)| *k != reference);
-    let group = |name: &str, mark, joined, points| Group { name: name.into(), mark, joined, points };
     let zero = place(reference).is_some_and(|p| p[1] == 0.0);
-    let groups = vec![
-        group("front", Mark::Circle, true, front.iter().map(shown).collect()),
-        group("other cases", Mark::Square, false, of(&|k| k != reference && !outcome.front.contains(&k))),
-        group(
-            if zero { "reference (error 0)" } else { "reference" },
-            Mark::Diamond,
-            false,
-            of(&|k| k == reference),
-        ),
+    let curve = |(k, (name, points)): (usize, (&str, Vec<(String, [f64; 2])>))| {
+        let (labels, points) = points.into_iter().unzip();
+        let style = Style { colour: k, dash: k, line: k == 0, marks: true };
+        Curve { labels, ..Curve::new(name, points, style) }
+    };
+    let curves = [
+        ("front", front.iter().map(shown).collect()),
+        ("other cases", of(&|k| k != reference && !outcome.front.contains(&k))),
+        (if zero { "reference (error 0)" } else { "reference" }, of(&|k| k == reference)),
     ];
-    ScatterPlot {
+    let y = if plain { "largest relative error" } else { "largest error over its tolerance" };
+    Plot {
         title: plan.title.clone(),
-        x_label: "CPU time of a run [s]".into(),
-        y_label: if plain { "largest relative error [1]" } else { "largest error over its tolerance [1]" }
-            .into(),
-        groups: groups.into_iter().filter(|g| !g.points.is_empty()).collect(),
-        level: Some(("tolerance".into(), unit)),
+        x: Axis::new("CPU time of a run", "s").logarithmic(),
+        y: Axis::new(y, "1").logarithmic(),
+        curves: curves.into_iter().enumerate().map(curve).collect(),
+        level: Some(Level { name: "tolerance".into(), y: unit, tolerance: 0.0 }),
     }
 }

@@ -18,9 +18,7 @@ mod mesh_file;
 pub mod pvd;
 #[cfg(test)]
 pub(crate) mod sample;
-pub mod scatter;
 pub mod stl;
-pub mod svg;
 pub mod tecplot;
 mod vtk;
 mod vtk_frames;

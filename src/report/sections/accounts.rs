@@ -3,7 +3,7 @@
 use super::overlay::{facts, one, overlay};
 use crate::data::RunData;
 use crate::page::{Cell, Section, columns, joined, plots};
-use crate::plot::{Plot, Side};
+use crate::plot::{Axis, figure};
 use maud::{Markup, html};
 use serde_json::Value;
 use trackbed_io::columns::{Definition, history};
@@ -32,7 +32,7 @@ const SPENT: [(&Definition, &str); 7] = [
 
 /// Formats energy, momentum, interface.
 pub fn energy(runs: &[RunData]) -> Option<Section> {
-    let time = || Side::new("time", "s");
+    let time = || Axis::new("time", "s");
     let curves = |columns: &'static [(&'static Definition, &'static str)], change: bool| {
         overlay(runs, move |run| {
             let Some(table) = run.table("history") else { return Vec::new() };
@@ -47,23 +47,15 @@ pub fn energy(runs: &[RunData]) -> Option<Section> {
     };
     let error = one(runs, |r| r.table("history")?.points(history::TIME, history::ENERGY_ERROR));
     // Several runs would give too many curves.
-    let single = runs.len() == 1;
-    let part = |plot: Plot| if single { plot.figure() } else { Markup::default() };
-    let figures = plots([
-        part(Plot::new("Work and dissipation", time(), Side::new("energy", "J"), curves(&SPENT, false))),
-        part(Plot::new(
-            "Stored energy since the start",
-            time(),
-            Side::new("change", "J"),
-            curves(&STORED, true),
-        )),
-        if single {
-            Markup::default()
-        } else {
-            Plot::new("Work", time(), Side::new("work", "J"), curves(&SPENT[..1], false)).figure()
-        },
-        Plot::new("Energy error", time(), Side::new("error", "J"), error).figure(),
-    ]);
+    let balance = match runs {
+        [_] => vec![
+            figure("Work and dissipation", time(), Axis::new("energy", "J"), curves(&SPENT, false)),
+            figure("Stored energy since the start", time(), Axis::new("change", "J"), curves(&STORED, true)),
+        ],
+        _ => vec![figure("Work", time(), Axis::new("work", "J"), curves(&SPENT[..1], false))],
+    };
+    let error = figure("Energy error", time(), Axis::new("error", "J"), error);
+    let figures = plots(balance.into_iter().chain([error]));
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
     let sums = facts(
         runs,

@@ -3,7 +3,7 @@
 use super::overlay::{facts, one, overlay};
 use crate::data::RunData;
 use crate::page::{Cell, Section, joined, plots};
-use crate::plot::{Plot, Side};
+use crate::plot::{Axis, figure};
 use trackbed_io::columns::history;
 
 /// Formats bonds.
@@ -18,18 +18,11 @@ pub fn bonds(runs: &[RunData]) -> Option<Section> {
     });
     let pieces = one(runs, |r| r.table("history")?.points(history::TIME, history::FRAGMENTS));
     let energy = one(runs, |r| r.table("history")?.points(history::TIME, history::BOND_ENERGY));
-    let time = || Side::new("time", "s");
+    let time = || Axis::new("time", "s");
     let figures = plots([
-        Plot::new("Broken bonds", time(), Side::new("bonds", "").with_zero(), broken).figure(),
-        Plot::new(
-            "Fragments",
-            time(),
-            Side::new("fragments, including single grains", "").with_zero(),
-            pieces,
-        )
-        .figure(),
-        Plot::new("Elastic energy of the bonds", time(), Side::new("energy", "J").with_zero(), energy)
-            .figure(),
+        figure("Broken bonds", time(), Axis::new("bonds", "").with_zero(), broken),
+        figure("Fragments", time(), Axis::new("fragments, including single grains", "").with_zero(), pieces),
+        figure("Elastic energy of the bonds", time(), Axis::new("energy", "J").with_zero(), energy),
     ]);
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
     let sums = facts(

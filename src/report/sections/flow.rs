@@ -3,7 +3,7 @@
 use super::overlay::{facts, one, overlay};
 use crate::data::RunData;
 use crate::page::{Cell, Section, joined, plots, table};
-use crate::plot::{Plot, Side};
+use crate::plot::{Axis, figure};
 use trackbed_io::columns::history;
 
 const STRETCHES: usize = 40;
@@ -18,11 +18,10 @@ pub fn flow(runs: &[RunData]) -> Option<Section> {
             .filter_map(of)
             .collect()
     });
-    let time = || Side::new("time", "s");
+    let time = || Axis::new("time", "s");
     let figures = plots([
-        Plot::new("Mass of grains", time(), Side::new("mass", "kg").with_zero(), mass).figure(),
-        Plot::new("Mass flow out", time(), Side::new("mean rate", "kg/s").with_zero(), one(runs, rate))
-            .figure(),
+        figure("Mass of grains", time(), Axis::new("mass", "kg").with_zero(), mass),
+        figure("Mass flow out", time(), Axis::new("mean rate", "kg/s").with_zero(), one(runs, rate)),
     ]);
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
     let sums = facts(

@@ -3,7 +3,7 @@
 use super::overlay::overlay;
 use crate::data::RunData;
 use crate::page::{Section, columns, joined, plots};
-use crate::plot::{Plot, Side};
+use crate::plot::{Axis, figure};
 use serde_json::Value;
 use trackbed_io::columns::{Definition, gradation};
 
@@ -38,8 +38,8 @@ pub fn gradation(runs: &[RunData]) -> Option<Section> {
         }
         out
     });
-    let y = Side::new("passing by mass [%]", "").with_zero();
-    let figure = Plot::new("Sieve curves", Side::new("sieve", "m").logarithmic(), y, curves).figure();
+    let y = Axis::new("passing by mass", "%").with_zero();
+    let figure = figure("Sieve curves", Axis::new("sieve", "m").logarithmic(), y, curves);
     let mut names = Vec::new();
     let mut found: Vec<&Value> = Vec::new();
     for run in runs {

@@ -3,7 +3,7 @@
 use super::overlay::overlay;
 use crate::data::RunData;
 use crate::page::{Section, joined, paragraph, plots};
-use crate::plot::{Plot, Side};
+use crate::plot::{Axis, figure};
 use std::f64::consts::TAU;
 use trackbed_io::columns::{Definition, Name, history};
 use trackbed_io::results::tables::Table;
@@ -23,7 +23,7 @@ pub fn loads(runs: &[RunData]) -> Option<Section> {
         let largest = largest(table, history::STRUCTURE_LAYER.of(name));
         (!largest.is_empty()).then(|| largest.iter().enumerate().map(|(k, f)| [*f, k as f64]).collect())
     });
-    let side = |name: &str| Side::new(name, "N");
+    let side = |name: &str| Axis::new(name, "N");
     let motion = |column: &'static Definition| {
         overlay(runs, |run| {
             let Some(table) = run.table("history") else { return Vec::new() };
@@ -36,25 +36,21 @@ pub fn loads(runs: &[RunData]) -> Option<Section> {
     };
     let (ways, accelerations) = (motion(history::STRUCTURE_MOTION), motion(history::STRUCTURE_ACCELERATION));
     let html = plots([
-        Plot::new("Horizontal load on structures", Side::new("time", "s"), side("load"), time).figure(),
-        Plot::new("Displacement of structures", Side::new("time", "s"), Side::new("displacement", "m"), ways)
-            .figure(),
-        Plot::new(
+        figure("Horizontal load on structures", Axis::new("time", "s"), side("load"), time),
+        figure("Displacement of structures", Axis::new("time", "s"), Axis::new("displacement", "m"), ways),
+        figure(
             "Acceleration of structures",
-            Side::new("time", "s"),
-            Side::new("acceleration", "m/s2"),
+            Axis::new("time", "s"),
+            Axis::new("acceleration", "m/s2"),
             accelerations,
-        )
-        .figure(),
-        Plot::new("Largest load of each sector", side("towards the axis, from x"), side("from y"), sectors)
-            .figure(),
-        Plot::new(
+        ),
+        figure("Largest load of each sector", side("towards the axis, from x"), side("from y"), sectors),
+        figure(
             "Largest horizontal load of each layer",
             side("load"),
-            Side::count("layer, from below"),
+            Axis::count("layer, from below"),
             layers,
-        )
-        .figure(),
+        ),
     ]);
     let note = paragraph(
         "The closed curve has for each sector a point in the direction that the sector looks to, as far from the origin as its largest load \

@@ -3,7 +3,7 @@
 use super::overlay::one;
 use crate::data::RunData;
 use crate::page::{Section, joined, paragraph, plots};
-use crate::plot::{Curve, Look, Plot, Side};
+use crate::plot::{Axis, Curve, Style, figure};
 use maud::Markup;
 use std::f64::consts::PI;
 use trackbed_io::columns::{Definition, cycles, history};
@@ -18,7 +18,7 @@ struct Loop {
 
 /// Formats loops, stiffness, damping.
 pub fn loops(runs: &[RunData]) -> Option<Section> {
-    let x = || Side::count("load cycle N").logarithmic();
+    let x = || Axis::count("load cycle N").logarithmic();
     let of = |column: &'static Definition| {
         one(runs, move |r| {
             // Zero means undefined.
@@ -27,7 +27,7 @@ pub fn loops(runs: &[RunData]) -> Option<Section> {
         })
     };
     let plot = |title: &str, name: &str, unit: &str, curves: Vec<Curve>| {
-        Plot::new(title, x(), Side::new(name, unit).with_zero(), curves).figure()
+        figure(title, x(), Axis::new(name, unit).with_zero(), curves)
     };
     let single = runs.iter().all(|r| r.table("cycles").is_none_or(|t| t.rows() < 2));
     let over_cycles = match single {
@@ -89,19 +89,15 @@ fn single_loops(runs: &[RunData]) -> (Markup, Markup) {
             let name = format!("{kind} {}", one.number);
             let (name, colour) =
                 if runs.len() > 1 { (format!("{}: {name}", run.label), r) } else { (name, k) };
-            let look = Look { colour, dash: k, line: true, marks: false };
-            curves.push(Curve { name, points: one.points.clone(), look });
+            let style = Style { colour, dash: k, line: true, marks: false };
+            curves.push(Curve::new(name, one.points.clone(), style));
         }
     }
     let text = "Loops are drawn from the rows of the history; a cycle with fewer than 12 of them is left out \
                 (output.history_interval sets the time between rows).";
     let note = if coarse { paragraph(text) } else { Markup::default() };
-    let x = Side::new("settlement since the start", "m");
-    (
-        Plot::new("Load–deflection loops", x, Side::new("load on the sleeper", "N").with_zero(), curves)
-            .figure(),
-        note,
-    )
+    let x = Axis::new("settlement since the start", "m");
+    (figure("Load–deflection loops", x, Axis::new("load on the sleeper", "N").with_zero(), curves), note)
 }
 
 /// First, last, others in geometric spacing.

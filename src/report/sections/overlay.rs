@@ -2,7 +2,7 @@
 
 use crate::data::RunData;
 use crate::page::{Cell, facts_table};
-use crate::plot::{Curve, Look};
+use crate::plot::{Curve, Style};
 use maud::Markup;
 use trackbed_io::columns::Name;
 
@@ -18,14 +18,14 @@ pub fn overlay(runs: &[RunData], of: impl Fn(&RunData) -> Vec<Named>) -> Vec<Cur
     let mut curves = Vec::new();
     for (r, run) in runs.iter().enumerate() {
         for (k, (name, points)) in of(run).into_iter().enumerate().filter(|(_, c)| !c.1.is_empty()) {
-            let look =
-                Look { colour: if several { r } else { k }, dash: k, line: true, marks: points.len() <= FEW };
+            let colour = if several { r } else { k };
+            let style = Style { colour, dash: k, line: true, marks: points.len() <= FEW };
             let name = match (several, name.as_str()) {
                 (true, "") => run.label.clone(),
                 (true, name) => format!("{}: {name}", run.label),
                 (false, _) => name,
             };
-            curves.push(Curve { name, points, look });
+            curves.push(Curve::new(name, points, style));
         }
     }
     curves

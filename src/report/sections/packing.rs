@@ -3,7 +3,7 @@
 use super::overlay::{facts, one};
 use crate::data::RunData;
 use crate::page::{Cell, Section, columns, headed, joined, plots, table};
-use crate::plot::{Plot, Side};
+use crate::plot::{Axis, figure};
 use maud::Markup;
 use serde_json::Value;
 use trackbed_io::columns::radial;
@@ -45,20 +45,18 @@ pub fn packing(runs: &[RunData]) -> Option<Section> {
         figures,
         measures(runs),
         plots([
-            Plot::new(
+            figure(
                 "Distribution of coordination numbers",
-                Side::count("neighbours").with_zero(),
-                Side::new("fraction of grains", "").with_zero(),
+                Axis::count("neighbours").with_zero(),
+                Axis::new("fraction of grains", "").with_zero(),
                 neighbours,
-            )
-            .figure(),
-            Plot::new(
+            ),
+            figure(
                 "Radial distribution function of the first box",
-                Side::new("distance", "m").with_zero(),
-                Side::new("g", "").with_zero(),
+                Axis::new("distance", "m").with_zero(),
+                Axis::new("g", "").with_zero(),
                 radial,
-            )
-            .figure(),
+            ),
         ]),
         made(runs),
     ]);

@@ -4,7 +4,7 @@ use super::laws::Law;
 use super::overlay::{facts, one};
 use crate::data::RunData;
 use crate::page::{Cell, Section, columns, headed, joined, paragraph, plots, table};
-use crate::plot::{Curve, Look, Plot, Side};
+use crate::plot::{Axis, Curve, Style, figure};
 use crate::quantity::{exact, number};
 use maud::{Markup, html};
 use serde_json::Value;
@@ -27,32 +27,25 @@ pub fn settlement(runs: &[RunData]) -> Option<Section> {
     let mut curves = data;
     if let [run] = runs {
         curves[0].name = "simulated".into();
-        curves[0].look.marks = true;
-        curves[0].look.line = run.table("cycles").is_some_and(|t| t.rows() > 200);
+        curves[0].style.marks = true;
+        curves[0].style.line = run.table("cycles").is_some_and(|t| t.rows() > 200);
         let drawn = laws[0].iter().filter(|law| !law.curve().is_empty());
-        curves.extend(drawn.enumerate().map(|(k, law)| fitted(law, law.name.clone(), 1 + k)));
+        curves.extend(drawn.enumerate().map(|(k, law)| fitted(law, law.name.clone(), [1 + k; 2])));
     } else {
         for (r, laws) in laws.iter().enumerate() {
             let best = laws.iter().filter(|l| !l.curve().is_empty()).max_by(|a, b| a.r2.total_cmp(&b.r2));
             let name = |law: &Law| format!("{}: {}", runs[r].label, law.name);
-            curves.extend(best.map(|law| Curve {
-                look: Look { colour: r, dash: 1, line: true, marks: false },
-                ..fitted(law, name(law), r)
-            }));
+            curves.extend(best.map(|law| fitted(law, name(law), [r, 1])));
         }
     }
     curves.retain(|c| !c.points.is_empty());
-    let y = || Side::new("settlement", "m").downwards().with_zero();
-    let linear =
-        Plot::new("Settlement of the sleeper", Side::count("load cycle N").with_zero(), y(), curves.clone());
+    let y = || Axis::new("settlement", "m").downwards().with_zero();
     let several = runs.iter().any(|r| r.table("cycles").is_some_and(|t| t.rows() > 2));
+    let count = || Axis::count("load cycle N");
     let figures = [
-        linear.figure(),
+        figure("Settlement of the sleeper", count().with_zero(), y(), curves.clone()),
         match several {
-            true => {
-                let x = Side::count("load cycle N").logarithmic();
-                Plot::new("Settlement over log N", x, y(), curves).figure()
-            }
+            true => figure("Settlement over log N", count().logarithmic(), y(), curves),
             false => Markup::default(),
         },
         lowering(runs),
@@ -61,9 +54,8 @@ pub fn settlement(runs: &[RunData]) -> Option<Section> {
     Section::new("settlement", "Settlement", html)
 }
 
-fn fitted(law: &Law, name: String, k: usize) -> Curve {
-    let look = Look { colour: k, dash: k, line: true, marks: false };
-    Curve { name, points: law.curve(), look }
+fn fitted(law: &Law, name: String, [colour, dash]: [usize; 2]) -> Curve {
+    Curve::new(name, law.curve(), Style { colour, dash, line: true, marks: false })
 }
 
 fn lowering(runs: &[RunData]) -> Markup {
@@ -82,8 +74,8 @@ fn lowering(runs: &[RunData]) -> Markup {
             })
             .collect()
     });
-    let y = Side::new("settlement since the start", "m").downwards().with_zero();
-    Plot::new("Settlement of the sleeper in time", Side::new("time", "s"), y, curves).figure()
+    let y = Axis::new("settlement since the start", "m").downwards().with_zero();
+    figure("Settlement of the sleeper in time", Axis::new("time", "s"), y, curves)
 }
 
 fn figures_of(runs: &[RunData]) -> Markup {
@@ -190,8 +182,8 @@ pub fn traffic(runs: &[RunData], axle_load: f64) -> Option<Section> {
         }
     }
     let (x, y) =
-        (Side::new("traffic", "MGT").with_zero(), Side::new("settlement", "m").downwards().with_zero());
-    let figure = Plot::new("Settlement against traffic", x, y, curves).figure();
+        (Axis::new("traffic", "MGT").with_zero(), Axis::new("settlement", "m").downwards().with_zero());
+    let figure = figure("Settlement against traffic", x, y, curves);
     let heads = ["traffic", "passages", "best law", "law", "smallest of all laws", "largest"];
     let note = paragraph(&format!(
         "A cycle is the passage of an axle of {axle_load} t; 1 MGT is a million gross tonnes. Laws with R² of at least {FAIR}, beyond the simulated \

@@ -3,29 +3,27 @@
 use super::overlay::{facts, one, overlay};
 use crate::data::RunData;
 use crate::page::{Cell, Section, joined, plots};
-use crate::plot::{Plot, Side};
+use crate::plot::{Axis, figure};
 use trackbed_io::columns::{Definition, history};
 
 /// Formats the runout.
 pub fn runout(runs: &[RunData]) -> Option<Section> {
     let of =
         |column: &'static Definition| one(runs, move |r| r.table("history")?.points(history::TIME, column));
-    let time = || Side::new("time", "s");
+    let time = || Axis::new("time", "s");
     let figures = plots([
-        Plot::new(
+        figure(
             "Front of the slide",
             time(),
-            Side::new("position along the slide", "m"),
+            Axis::new("position along the slide", "m"),
             of(history::RUNOUT_FRONT),
-        )
-        .figure(),
-        Plot::new(
+        ),
+        figure(
             "Motion of the slide",
             time(),
-            Side::new("kinetic energy", "J").with_zero(),
+            Axis::new("kinetic energy", "J").with_zero(),
             of(history::RUNOUT_KINETIC),
-        )
-        .figure(),
+        ),
     ]);
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
     let sums = facts(
@@ -62,13 +60,12 @@ pub fn specimen(runs: &[RunData]) -> Option<Section> {
         .filter_map(|(name, x)| Some((name.to_string(), table.points(x, history::SPECIMEN_STRESS)?)))
         .collect()
     });
-    let figures = plots([Plot::new(
+    let figures = plots([figure(
         "Stress and strain",
-        Side::new("strain", ""),
-        Side::new("stress", "Pa").with_zero(),
+        Axis::new("strain", ""),
+        Axis::new("stress", "Pa").with_zero(),
         curve,
-    )
-    .figure()]);
+    )]);
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
     let sums = facts(
         runs,

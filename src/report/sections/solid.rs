@@ -4,14 +4,14 @@ use super::overlay::{dominant, facts, one, overlay};
 use super::profiles::is_line_point;
 use crate::data::RunData;
 use crate::page::{Cell, Section, columns, headed, joined, paragraph, plots, table};
-use crate::plot::{Plot, Side};
+use crate::plot::{Axis, figure};
 use maud::Markup;
 use trackbed_input::scene::history::TimeFunction;
 use trackbed_io::columns::{Definition, gauss, history, modes, safety};
 
 /// Formats the solid.
 pub fn solid(runs: &[RunData]) -> Option<Section> {
-    let time = || Side::new("time", "s");
+    let time = || Axis::new("time", "s");
     let driven = overlay(runs, load_displacement);
     let reactions = overlay(runs, |run| {
         let stems =
@@ -51,21 +51,16 @@ pub fn solid(runs: &[RunData]) -> Option<Section> {
         ),
     };
     let figures = plots([
-        Plot::new(
+        figure(
             "Load–displacement",
-            Side::new("displacement of the support", "m"),
-            Side::new("force", "N"),
+            Axis::new("displacement of the support", "m"),
+            Axis::new("force", "N"),
             driven,
-        )
-        .figure(),
-        Plot::new("Reactions of named supports", time(), Side::new("force on the solid", "N"), reactions)
-            .figure(),
-        Plot::new("Displacement of probes", time(), Side::new("displacement", "m"), probes(history::PROBE_U))
-            .figure(),
-        Plot::new("Velocity of probes", time(), Side::new("velocity", "m/s"), probes(history::PROBE_V))
-            .figure(),
-        Plot::new("Vertical stress at probes", time(), Side::new("stress, tension positive", "Pa"), stresses)
-            .figure(),
+        ),
+        figure("Reactions of named supports", time(), Axis::new("force on the solid", "N"), reactions),
+        figure("Displacement of probes", time(), Axis::new("displacement", "m"), probes(history::PROBE_U)),
+        figure("Velocity of probes", time(), Axis::new("velocity", "m/s"), probes(history::PROBE_V)),
+        figure("Vertical stress at probes", time(), Axis::new("stress, tension positive", "Pa"), stresses),
     ]);
     Section::new("solid", "Solid", joined([figures, note, equilibrium(runs), supports(runs)]))
 }
@@ -152,13 +147,12 @@ pub fn safety(runs: &[RunData]) -> Option<Section> {
         let table = r.table("safety")?;
         table.points(safety::FACTOR, safety::LARGEST_DISPLACEMENT)
     });
-    let figure = Plot::new(
+    let figure = figure(
         "Largest displacement over strength reduction factor",
-        Side::new("strength reduction factor", ""),
-        Side::new("largest displacement", "m").with_zero(),
+        Axis::new("strength reduction factor", ""),
+        Axis::new("largest displacement", "m").with_zero(),
         curve,
-    )
-    .figure();
+    );
     let path = |path: &'static str| move |r: &RunData| Cell::of(r.number(path), "");
     let sums = facts(
         runs,

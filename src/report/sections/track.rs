@@ -3,12 +3,12 @@
 use super::overlay::{facts, one, overlay};
 use crate::data::RunData;
 use crate::page::{Cell, Section, joined, plots, table};
-use crate::plot::{Plot, Side};
+use crate::plot::{Axis, figure};
 use trackbed_io::columns::{Definition, cycles, history, push};
 
 /// Formats formation pressure and force on the solid.
 pub fn pressure(runs: &[RunData]) -> Option<Section> {
-    let time = || Side::new("time", "s");
+    let time = || Axis::new("time", "s");
     let in_time = one(runs, |r| r.table("history")?.points(history::TIME, history::PEAK_FORMATION_PRESSURE));
     let force = one(runs, |r| {
         let points = r.table("history")?.points(history::TIME, history::CONTACT_FORCE_ON_SOLID.at(2))?;
@@ -19,23 +19,16 @@ pub fn pressure(runs: &[RunData]) -> Option<Section> {
         let points = table.points(cycles::CYCLE, cycles::PEAK_FORMATION_PRESSURE)?;
         Some(points.into_iter().filter(|p| p[1] > 0.0).collect())
     });
-    let y = |name: &str| Side::new(name, "Pa").with_zero();
+    let y = |name: &str| Axis::new(name, "Pa").with_zero();
     let html = plots([
-        Plot::new("Peak pressure on the formation", time(), y("peak pressure"), in_time).figure(),
-        Plot::new(
+        figure("Peak pressure on the formation", time(), y("peak pressure"), in_time),
+        figure(
             "Peak pressure on the formation per cycle",
-            Side::count("load cycle N").logarithmic(),
+            Axis::count("load cycle N").logarithmic(),
             y("peak pressure"),
             by_cycle,
-        )
-        .figure(),
-        Plot::new(
-            "Vertical force of the bed on the solid",
-            time(),
-            Side::new("force", "N").with_zero(),
-            force,
-        )
-        .figure(),
+        ),
+        figure("Vertical force of the bed on the solid", time(), Axis::new("force", "N").with_zero(), force),
     ]);
     Section::new("pressure", "Pressure on the formation", html)
 }
@@ -50,7 +43,7 @@ pub fn sleepers(runs: &[RunData]) -> Option<Section> {
         });
         all.collect()
     };
-    let time = || Side::new("time", "s");
+    let time = || Axis::new("time", "s");
     let load = overlay(runs, |r| numbered(r, history::LOAD));
     let rail = overlay(runs, |r| numbered(r, history::RAIL));
     let mut rows = Vec::new();
@@ -82,9 +75,8 @@ pub fn sleepers(runs: &[RunData]) -> Option<Section> {
         "time without contact",
     ];
     let figures = plots([
-        Plot::new("Vertical load on rail seats", time(), Side::new("load", "N"), load).figure(),
-        Plot::new("Rail deflection at the sleepers", time(), Side::new("deflection, upwards", "m"), rail)
-            .figure(),
+        figure("Vertical load on rail seats", time(), Axis::new("load", "N"), load),
+        figure("Rail deflection at the sleepers", time(), Axis::new("deflection, upwards", "m"), rail),
     ]);
     Section::new("sleepers", "Sleepers", joined([figures, table(&heads, &rows)]))
 }
@@ -93,17 +85,11 @@ pub fn sleepers(runs: &[RunData]) -> Option<Section> {
 pub fn push(runs: &[RunData]) -> Option<Section> {
     let curve =
         |column: &'static Definition| one(runs, move |r| r.table("push")?.points(push::DISPLACEMENT, column));
-    let x = || Side::new("lateral displacement of the sleeper", "m");
+    let x = || Axis::new("lateral displacement of the sleeper", "m");
     let path = |path: &'static str, unit: &'static str| move |r: &RunData| Cell::of(r.number(path), unit);
     let html = plots([
-        Plot::new(
-            "Lateral resistance",
-            x(),
-            Side::new("actuator force", "N").with_zero(),
-            curve(push::FORCE),
-        )
-        .figure(),
-        Plot::new("Uplift of the sleeper", x(), Side::new("uplift", "m"), curve(push::UPLIFT)).figure(),
+        figure("Lateral resistance", x(), Axis::new("actuator force", "N").with_zero(), curve(push::FORCE)),
+        figure("Uplift of the sleeper", x(), Axis::new("uplift", "m"), curve(push::UPLIFT)),
     ]);
     let figures = facts(
         runs,

@@ -3,7 +3,7 @@
 use super::overlay::{dominant, overlay};
 use crate::data::RunData;
 use crate::page::{Cell, Section, joined, paragraph, plots, table};
-use crate::plot::{Plot, Side};
+use crate::plot::{Axis, figure};
 use trackbed_input::scene::walls::{Wall, WallKind};
 use trackbed_io::columns::{Definition, history};
 use trackbed_io::results::tables::Table;
@@ -55,22 +55,19 @@ pub fn walls(runs: &[RunData]) -> Option<Section> {
     let stress = overlay(runs, |run| servos(run).into_iter().map(|s| (s.name, s.points)).collect());
     let strained = !stress.is_empty();
     let html = plots([
-        Plot::new(
+        figure(
             "Stress and strain of servo walls",
-            Side::new("strain", ""),
-            Side::new("stress", "Pa"),
+            Axis::new("strain", ""),
+            Axis::new("stress", "Pa"),
             stress,
-        )
-        .figure(),
-        Plot::new("Force of the grains on walls", Side::new("time", "s"), Side::new("force", "N"), forces)
-            .figure(),
-        Plot::new(
+        ),
+        figure("Force of the grains on walls", Axis::new("time", "s"), Axis::new("force", "N"), forces),
+        figure(
             "Force–displacement of moving walls",
-            Side::new("displacement", "m"),
-            Side::new("force", "N"),
+            Axis::new("displacement", "m"),
+            Axis::new("force", "N"),
             ways,
-        )
-        .figure(),
+        ),
     ]);
     let note = match strained {
         true => paragraph(

@@ -8,8 +8,8 @@ use trackbed_dem::measure;
 use trackbed_input::model::grains::GradedGroup;
 use trackbed_io::columns::gradation;
 use trackbed_io::failure::Failure;
+use trackbed_io::plot::{Axis, Plot};
 use trackbed_io::write::csv::{Field, write_table};
-use trackbed_io::write::svg::{LinePlot, Series};
 
 const CURVE_POINTS: usize = 120;
 
@@ -59,7 +59,7 @@ pub(super) fn write(
     groups: &[GradedGroup],
 ) -> Result<(), Failure> {
     let mut rows: Vec<Sieve> = Vec::new();
-    let mut series = Vec::new();
+    let mut curves = Vec::<(String, Vec<[f64; 2]>)>::new();
     for group in groups {
         let stones = stones(view, group);
         let limits = &group.grading.limits;
@@ -71,7 +71,7 @@ pub(super) fn write(
         let mut add = |name: &str, points: Vec<[f64; 2]>| {
             let name = if groups.len() > 1 { format!("{}: {name}", group.name) } else { name.to_string() };
             let points = points.into_iter().map(|[size, passing]| [1e3 * size, 100.0 * passing]).collect();
-            series.push(Series { name, points });
+            curves.push((name, points));
         };
         let points = curve_sizes(group);
         let curve = &group.grading.curve;
@@ -82,11 +82,7 @@ pub(super) fn write(
         add("lower limit", limits.iter().map(|l| [l[0], l[1]]).collect());
     }
     write_table(&dir.join("gradation.csv"), &SIEVES, rows)?;
-    let plot = LinePlot {
-        title: format!("{title}: sieve curve"),
-        x_label: "sieve [mm]".into(),
-        y_label: "passing by mass [%]".into(),
-        series,
-    };
+    let (x, y) = (Axis::new("sieve", "mm"), Axis::new("passing by mass", "%"));
+    let plot = Plot::lines(format!("{title}: sieve curve"), x, y, curves);
     Ok(plot.write(&dir.join("gradation.svg"))?)
 }

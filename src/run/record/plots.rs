@@ -3,7 +3,7 @@
 use super::Results;
 use crate::specimen::Point;
 use trackbed_io::failure::Failure;
-use trackbed_io::write::svg::{LinePlot, Series};
+use trackbed_io::plot::{Axis, Plot};
 use trackbed_track::cycles::Cycle;
 
 impl Results<'_> {
@@ -22,21 +22,18 @@ impl Results<'_> {
     /// I/O errors.
     pub fn plot_specimen(&self, brazilian: bool) -> Result<(), Failure> {
         let curve = &self.course.specimen;
-        let series = |name: &str, x: fn(&Point) -> f64| Series {
-            name: name.into(),
-            points: curve.iter().map(|p| [1e3 * x(p), 1e-6 * p.stress]).collect(),
+        let line = |(name, x): (&'static str, fn(&Point) -> f64)| {
+            (name, curve.iter().map(|p| [1e3 * x(p), 1e-6 * p.stress]).collect())
         };
-        let mut curves = vec![series("platens", |p| p.strain)];
-        if !brazilian {
-            curves.push(series("axial, of the grains", |p| p.axial));
-            curves.push(series("lateral, to the left", |p| -p.lateral));
-        }
-        let plot = LinePlot {
-            title: format!("{}: stress and strain", self.job.title),
-            x_label: "strain [1e-3]".into(),
-            y_label: "stress [MPa]".into(),
-            series: curves,
-        };
+        let strains: [(_, fn(&Point) -> f64); 3] = [
+            ("platens", |p| p.strain),
+            ("axial, of the grains", |p| p.axial),
+            ("lateral, to the left", |p| -p.lateral),
+        ];
+        let shown = if brazilian { 1 } else { 3 };
+        let title = format!("{}: stress and strain", self.job.title);
+        let (x, y) = (Axis::new("strain", "1e-3"), Axis::new("stress", "MPa"));
+        let plot = Plot::lines(title, x, y, strains.into_iter().take(shown).map(line));
         Ok(plot.write(&self.dir.join("specimen.svg"))?)
     }
 
@@ -47,13 +44,9 @@ impl Results<'_> {
         }
         let (several, whose) = if lowering.len() > 1 { (true, "sleepers") } else { (false, "sleeper") };
         let name = |k: usize| if several { format!("sleeper {}", k + 1) } else { "sleeper".into() };
-        let series = lowering.iter().enumerate();
-        let plot = LinePlot {
-            title: format!("{}: settlement of the {whose}", self.job.title),
-            x_label: "time [s]".into(),
-            y_label: "settlement [mm]".into(),
-            series: series.map(|(k, points)| Series { name: name(k), points: points.clone() }).collect(),
-        };
+        let lines = lowering.iter().enumerate().map(|(k, points)| (name(k), points.clone()));
+        let title = format!("{}: settlement of the {whose}", self.job.title);
+        let plot = Plot::lines(title, Axis::new("time", "s"), Axis::new("settlement", "mm"), lines);
         Ok(plot.write(&self.dir.join("sleeper.svg"))?)
     }
 
@@ -62,19 +55,14 @@ impl Results<'_> {
         if cycles.is_empty() {
             return Ok(());
         }
-        let series = |name: &str, f: fn(&Cycle) -> f64| Series {
-            name: name.into(),
-            points: cycles.iter().map(|c| [f64::from(c.number), 1e3 * f(c)]).collect(),
+        let line = |name, f: fn(&Cycle) -> f64| {
+            (name, cycles.iter().map(|c| [f64::from(c.number), 1e3 * f(c)]).collect())
         };
-        let plot = LinePlot {
-            title: format!("{}: settlement", self.job.title),
-            x_label: "load cycle".into(),
-            y_label: "[mm]".into(),
-            series: vec![
-                series("settlement", |c| c.settlement),
-                series("resilient deflection", |c| c.resilient_deflection),
-            ],
-        };
+        let lines =
+            [line("settlement", |c| c.settlement), line("resilient deflection", |c| c.resilient_deflection)];
+        let title = format!("{}: settlement", self.job.title);
+        let (x, y) = (Axis::count("load cycle"), Axis::new("settlement, deflection", "mm"));
+        let plot = Plot::lines(title, x, y, lines);
         Ok(plot.write(&self.dir.join("settlement.svg"))?)
     }
 }
