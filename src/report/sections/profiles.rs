@@ -3,7 +3,7 @@
 use super::overlay::{Named, overlay};
 use crate::data::RunData;
 use crate::page::{Section, joined, paragraph, plots};
-use crate::plot::{Plot, Side};
+use crate::plot::{Axis, figure};
 use trackbed_input::scene::Probe;
 use trackbed_io::columns::{Definition, history};
 
@@ -79,8 +79,8 @@ pub fn profiles(runs: &[RunData]) -> Option<Section> {
         ("Vertical strain along lines", history::PROBE_STRAIN, "strain, elongation positive", ""),
     ]
     .map(|(title, quantity, name, unit)| {
-        let along = Side::new("distance from the first end", "m");
-        Plot::new(title, along, Side::new(name, unit), curves(quantity, VERTICAL)).figure()
+        let along = Axis::new("distance from the first end", "m");
+        figure(title, along, Axis::new(name, unit), curves(quantity, VERTICAL))
     });
     if figures.iter().all(|figure| figure.0.is_empty()) {
         return None;
