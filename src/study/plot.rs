@@ -30,22 +30,23 @@ pub fn pareto(plan: &Plan, outcome: &Outcome) -> Plot {
         outcome.front.iter().filter_map(|k| placed.iter().find(|(other, _)| other == k).copied()).collect();
     front.retain(|(k, _)| *k != reference);
     let zero = place(reference).is_some_and(|p| p[1] == 0.0);
-    let curve = |(k, (name, points)): (usize, (&str, Vec<(String, [f64; 2])>))| {
+    let curve = |k: usize, name: &str, points: Vec<(String, [f64; 2])>| {
         let (labels, points) = points.into_iter().unzip();
         let style = Style { colour: k, dash: k, line: k == 0, marks: true };
         Curve { labels, ..Curve::new(name, points, style) }
     };
-    let curves = [
-        ("front", front.iter().map(shown).collect()),
-        ("other cases", of(&|k| k != reference && !outcome.front.contains(&k))),
-        (if zero { "reference (error 0)" } else { "reference" }, of(&|k| k == reference)),
+    let exact = if zero { "reference (error 0)" } else { "reference" };
+    let curves = vec![
+        curve(0, "front", front.iter().map(shown).collect()),
+        curve(1, "other cases", of(&|k| k != reference && !outcome.front.contains(&k))),
+        curve(2, exact, of(&|k| k == reference)),
     ];
     let y = if plain { "largest relative error" } else { "largest error over its tolerance" };
     Plot {
         title: plan.title.clone(),
         x: Axis::new("CPU time of a run", "s").logarithmic(),
         y: Axis::new(y, "1").logarithmic(),
-        curves: curves.into_iter().enumerate().map(curve).collect(),
+        curves,
         level: Some(Level { name: "tolerance".into(), y: unit, tolerance: 0.0 }),
     }
 }

@@ -22,18 +22,18 @@ impl Results<'_> {
     /// I/O errors.
     pub fn plot_specimen(&self, brazilian: bool) -> Result<(), Failure> {
         let curve = &self.course.specimen;
-        let line = |(name, x): (&'static str, fn(&Point) -> f64)| {
+        let line = |name, x: fn(&Point) -> f64| {
             (name, curve.iter().map(|p| [1e3 * x(p), 1e-6 * p.stress]).collect())
         };
-        let strains: [(_, fn(&Point) -> f64); 3] = [
-            ("platens", |p| p.strain),
-            ("axial, of the grains", |p| p.axial),
-            ("lateral, to the left", |p| -p.lateral),
+        let strains = [
+            line("platens", |p| p.strain),
+            line("axial, of the grains", |p| p.axial),
+            line("lateral, to the left", |p| -p.lateral),
         ];
         let shown = if brazilian { 1 } else { 3 };
         let title = format!("{}: stress and strain", self.job.title);
         let (x, y) = (Axis::new("strain", "1e-3"), Axis::new("stress", "MPa"));
-        let plot = Plot::lines(title, x, y, strains.into_iter().take(shown).map(line));
+        let plot = Plot::lines(title, x, y, strains.into_iter().take(shown));
         Ok(plot.write(&self.dir.join("specimen.svg"))?)
     }
 
