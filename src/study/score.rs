@@ -68,10 +68,13 @@ fn read(file: &Path) -> Result<Vec<Row>, Failure> {
     let bytes = source::bytes(file, source::LARGEST_TEXT).map_err(|r| Failure::Input(r.sentence(file)))?;
     let mut reader =
         csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(&bytes[..]);
+    let heads = reader.headers().map_err(|e| refuse(1, e.to_string(), COLUMNS))?.clone();
     let mut rows: Vec<Row> = Vec::new();
-    for row in reader.deserialize() {
-        let row: Row = row.map_err(|e: csv::Error| {
-            let line = e.position().map_or(1, csv::Position::line);
+    for record in reader.records() {
+        let record = record
+            .map_err(|e| refuse(e.position().map_or(1, csv::Position::line), e.to_string(), COLUMNS))?;
+        let line = record.position().map_or(1, csv::Position::line);
+        let row: Row = record.deserialize(Some(&heads)).map_err(|e| {
             let text = match e.kind() {
                 csv::ErrorKind::Deserialize { err, .. } => err.kind().to_string(),
                 _ => e.to_string(),
@@ -79,7 +82,6 @@ fn read(file: &Path) -> Result<Vec<Row>, Failure> {
             let (found, expected) = text.split_once(", expected ").unwrap_or((&text, COLUMNS));
             refuse(line, found.into(), expected)
         })?;
-        let line = rows.len() as u64 + 2;
         for (name, value, positive) in [
             ("pressure", Some(row.pressure), true),
             ("deviator", Some(row.deviator), true),
@@ -155,6 +157,13 @@ fn fraction(all: impl Iterator<Item = bool>) -> Option<f64> {
     (count > 0).then(|| good as f64 / count as f64)
 }
 
+/// Median of ascending values; none without any.
+fn median(sorted: &[f64]) -> Option<f64> {
+    let middle = sorted.len() / 2;
+    let upper = *sorted.get(middle)?;
+    Some(if sorted.len() % 2 == 1 { upper } else { 0.5 * (sorted[middle - 1] + upper) })
+}
+
 fn score(measured: &[Row], model: &[Row]) -> Score {
     let found = |row: &Row| model.iter().find(|other| other.is_of(row));
     // Measured row and value, prediction.
@@ -184,7 +193,7 @@ fn score(measured: &[Row], model: &[Row]) -> Score {
         count: pairs.len(),
         missing: pairs.iter().filter(|p| p.2.is_none()).count(),
         close: [Strain::Axial, Strain::Volumetric].map(close),
-        factor: factors.get(factors.len() / 2).map(|f| libm::exp(*f)),
+        factor: median(&factors).map(libm::exp),
         order: (!orders.is_empty()).then(|| orders.iter().sum::<f64>() / orders.len() as f64),
         spread: fraction(ranges.map(|(value, low, high)| (low..=high).contains(&value))),
     }
@@ -262,6 +271,10 @@ mod tests {
         assert!((found.factor.unwrap() - 1.475).abs() < 1e-12, "{found:?}");
         assert_eq!((found.order, found.spread), (Some(1.0), Some(0.5)));
         assert_eq!(score(&measured, &measured).close, [Some(1.0), Some(1.0)]);
+        assert_eq!(
+            [median(&[]), median(&[1.0, 3.0]), median(&[1.0, 2.0, 9.0])],
+            [None, Some(2.0), Some(2.0)]
+        );
     }
 
     #[test]
