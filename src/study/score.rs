@@ -271,6 +271,9 @@ mod tests {
         assert!((found.factor.unwrap() - 1.475).abs() < 1e-12, "{found:?}");
         assert_eq!((found.order, found.spread), (Some(1.0), Some(0.5)));
         assert_eq!(score(&measured, &measured).close, [Some(1.0), Some(1.0)]);
+        let close =
+            [(1.5, 1.0), (1.0, 1.5), (1.6, 1.0), (1.0, 1.6), (-1.0, 1.0)].map(|(a, b)| is_close(a, b));
+        assert_eq!(close, [true, true, false, false, false]);
         assert_eq!(
             [median(&[]), median(&[1.0, 3.0]), median(&[1.0, 2.0, 9.0])],
             [None, Some(2.0), Some(2.0)]
