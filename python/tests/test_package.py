@@ -274,6 +274,21 @@ def test_a_study(falling, tmp_path):
         trackbed.study(file, tmp_path / "other")
 
 
+def test_a_study_of_a_scene(falling, tmp_path):
+    quantity = {"name": "gravity", "file": "history.csv", "column": "grains_gravity", "take": "last", "unit": "J"}
+    axis = [{"key": "time.end", "values": [0.05, 0.1]}]
+    tables = {"title": "heights", "scene": trackbed.Scene.load(falling), "axis": axis, "quantity": [quantity]}
+    rows = trackbed.study(tables, tmp_path / "new" / "heights", jobs=1, threads=1)
+    assert [row["end"] for row in rows] == ["0.05", "0.1"] and all(row["done"] == "1" for row in rows)
+    assert {path.name for path in (tmp_path / "new").iterdir()} == {"heights", "heights.toml", "heights.scene.toml"}
+    with pytest.raises(ValueError, match="heights.scene.toml: found a file"):
+        trackbed.study(tables, tmp_path / "new" / "heights")
+    again = trackbed.study({**tables, "scene": falling}, tmp_path / "new" / "heights", jobs=1, threads=1, force=True)
+    assert again == rows
+    with pytest.raises(ValueError, match="scene: found None"):
+        trackbed.study({"axis": axis}, tmp_path / "none")
+
+
 def test_help_reads_well():
     for item in [trackbed.run, trackbed.check, trackbed.explain, trackbed.study, trackbed.Simulation, trackbed.Result]:
         assert item.__doc__ and len(item.__doc__) > 40, item

@@ -6,7 +6,7 @@ import csv
 import enum
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final, Union
 
@@ -14,8 +14,9 @@ from . import _trackbed
 from .overrides import Overrides, assignments
 from .program import arguments, run_program
 from .results import Result
-from .scene import Scene, SceneLike, source
+from .scene import Scene, SceneLike, source, tree, write
 from .simulation import Simulation
+from .toml import document
 
 Folder = Union[str, "os.PathLike[str]"]
 
@@ -105,14 +106,41 @@ def schema() -> dict[str, Any]:
 
 
 def study(
-    file: Folder, out: Folder | None = None, *, jobs: int | None = None, threads: int | None = None, resume: bool = False, force: bool = False
+    study: Folder | Mapping[str, Any],
+    out: Folder | None = None,
+    *,
+    jobs: int | None = None,
+    threads: int | None = None,
+    resume: bool = False,
+    force: bool = False,
 ) -> list[dict[str, str]]:
-    """Carries out a study as `trackbed study` does, every run a process of its own; the rows of its table (`study.csv`) by column."""
-    folder = Path(out) if out is not None else Path("results") / Path(file).stem
+    """Carries out a study as `trackbed study` does, every run a process of its own; the rows of its table (`study.csv`) by column.
+
+    study: a study file, or a mapping of its tables, of which `scene` is a `Scene`, a mapping or a scene file. A mapping is saved beside
+        `out`: `<out>.toml`, `<out>.scene.toml`.
+    out: folder of the results; default `results/<name>`, of a mapping `results/study`.
+    """
+    name = "study" if isinstance(study, Mapping) else Path(study).stem
+    folder = Path(out) if out is not None else Path("results") / name
+    file = saved(study, folder, resume or force) if isinstance(study, Mapping) else study
     given = arguments({"jobs": jobs, "threads": threads, "resume": resume, "force": force, "quiet": True})
     run_program("study", file, "--out", folder, *given)
     with open(folder / "study.csv", newline="", encoding="utf-8") as rows:
         return list(csv.DictReader(rows))
+
+
+def saved(tables: Mapping[str, Any], folder: Path, replace: bool) -> Path:
+    """Writes the files of a study beside the folder of its results; returns the study file."""
+    entries = tree(dict(tables))
+    scene, file = tables.get("scene"), folder.with_name(f"{folder.name}.toml")
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    if isinstance(scene, Mapping):
+        entries["scene"] = Scene(scene).save(folder.with_name(f"{folder.name}.scene.toml"), force=replace).name
+    elif isinstance(scene, (str, os.PathLike)):
+        entries["scene"] = Path(os.path.relpath(scene, folder.parent)).as_posix()
+    else:
+        raise ValueError(f"scene: found {scene!r}, expected a Scene, a mapping or a scene file")
+    return write(file, document(entries), replace)
 
 
 def new(template: str, folder: Folder | None = None) -> Scene:

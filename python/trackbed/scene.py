@@ -221,23 +221,14 @@ class Scene(Table):
         """Writes the scene to a file, completely or not at all, and returns it. Relative paths are adapted to its folder; comments
         are kept if nothing has changed. `force`: replaces another file."""
         path = Path(path)
-        if path.exists() and not force and not same(path, self.path):
-            raise ValueError(f"{path}: found a file, expected none, or force=True to replace it")
+        force = force or same(path, self.path)
+        refuse(path, force)
         if path.parent.resolve() != self.path.parent.resolve():
             keys = relocated(tree(self), _schema(), self.path.parent, path.parent)
             self._entries.clear()
             self.update(keys)
         text = self.text
-        target = path.resolve()
-        part = target.with_name(f"{target.name}.{os.getpid()}.part")
-        try:
-            part.write_text(text, encoding="utf-8", newline="\n")
-            if target.exists():
-                shutil.copymode(target, part)
-            os.replace(part, target)
-        finally:
-            part.unlink(missing_ok=True)
-        self.path = path
+        self.path = write(path, text, force)
         object.__setattr__(self, "_original", (text, tree(self)))
         return path
 
@@ -258,6 +249,27 @@ def source(scene: SceneLike) -> tuple[str, str | None]:
     except (OSError, ValueError):
         saved = False
     return os.fspath(scene.path), None if saved else text
+
+
+def write(path: Path, text: str, replace: bool) -> Path:
+    """Writes a text file, completely or not at all, and returns its path."""
+    refuse(path, replace)
+    target = path.resolve()
+    part = target.with_name(f"{target.name}.{os.getpid()}.part")
+    try:
+        part.write_text(text, encoding="utf-8", newline="\n")
+        if target.exists():
+            shutil.copymode(target, part)
+        os.replace(part, target)
+    finally:
+        part.unlink(missing_ok=True)
+    return path
+
+
+def refuse(path: Path, replace: bool) -> None:
+    """Refuses to replace a file."""
+    if path.exists() and not replace:
+        raise ValueError(f"{path}: found a file, expected none, or force=True to replace it")
 
 
 def kept(value: Any) -> Any:

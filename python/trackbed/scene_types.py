@@ -282,7 +282,7 @@ SpecimenAxis = Literal["x", "y", "z"]
 SpecimenTest = Literal["compression", "brazilian"]
 
 
-# Distribution of strengths and stiffnesses.
+# Distribution of strengths or stiffnesses.
 # "normal": Cut off at zero.
 # "weibull": Scale as given.
 SpreadKind = Literal["normal", "weibull"]
@@ -905,6 +905,9 @@ class GrainMaterial(TypedDict, total=False):
     # Normal stiffness of two of this material [N/m]; default rigid; > 0.
     stiffness: Quantity
 
+    # Spread of `young` or `stiffness` over the grains; default none.
+    stiffness_spread: GrainStiffnessSpread
+
     # Tangential over normal dashpot; default 0; 0–1.
     tangential_damping_ratio: Float
 
@@ -916,6 +919,22 @@ class GrainMaterial(TypedDict, total=False):
 
     # Young's modulus, of Hertzian laws [Pa]; default none; > 0.
     young: Quantity
+
+
+class GrainStiffnessSpread(TypedDict, total=False):
+    """Spread of stiffness over the grains of each group, in 16 classes of equal number."""
+
+    # Standard deviation over mean; > 0, ≤ 10; with `"normal"`.
+    deviation: Float
+
+    # Distribution.
+    kind: Required[SpreadKind]
+
+    # Weibull modulus; > 0.05, ≤ 1000; with `"weibull"`.
+    modulus: Float
+
+    # Random seed; default 1.
+    seed: Integer
 
 
 class Grains(TypedDict, total=False):

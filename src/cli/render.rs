@@ -4,7 +4,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 /// Arguments of `render`. Where `PART=` stands, it may be left out: all parts are meant then. Parts are grains, chains, solid, boundary,
-/// track; of a scene also marks (supports, loads, boxes, probes), sets.
+/// track, water; of a scene also marks (supports, loads, boxes, probes), sets.
 #[derive(Debug, Args)]
 pub struct RenderArgs {
     /// Results directory of a run, or a scene.
@@ -42,7 +42,7 @@ pub struct RenderArgs {
     /// Colour map: viridis, cividis, blue-red, diverging [default: viridis].
     #[arg(long, value_name = "[PART=]NAME")]
     pub colour_map: Vec<String>,
-    /// Opacity from 0 to 1 [default: 1; boundary: 0.25].
+    /// Opacity from 0 to 1 [default: 1; boundary: 0.25; water: 0.35].
     #[arg(long, value_name = "[PART=]FRACTION")]
     pub opacity: Vec<String>,
     /// Range to keep [m], as x=-1:1, or of one part as grains:y=0:.

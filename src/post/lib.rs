@@ -7,3 +7,4 @@ pub mod convert;
 pub mod preview;
 pub mod render;
 pub mod view;
+mod water;

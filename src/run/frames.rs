@@ -9,7 +9,7 @@ use trackbed_dem::bond::{Break, BreakMode};
 use trackbed_dem::shape::Shape;
 use trackbed_fem::stress;
 use trackbed_input::model::OutputPlan;
-use trackbed_input::model::grains::GrainsPart;
+use trackbed_input::model::grains::{GrainsPart, MaterialsPart};
 use trackbed_io::failure::Failure;
 use trackbed_io::write::{
     BODY_FIELDS, BodyField, ChainFrame, Frame, GrainFrame, NO_BODY, Part, SolidFrame, Values, WallFrame,
@@ -108,7 +108,8 @@ pub fn write(
     let stones = writers.show(Part::Walls) && view.model.has_faces();
     let any = stones || writers.show(Part::Grains) || writers.show(Part::Chains);
     let contacts = if any { dem::measure::contacts(view.model, view.state) } else { Vec::new() };
-    let bodies = (stones || writers.show(Part::Grains)).then(|| BodyFields::of(view, &contacts, extra));
+    let bodies = (stones || writers.show(Part::Grains))
+        .then(|| BodyFields::of(view, &contacts, (&part.materials, extra)));
     let spheres = bodies.as_ref().filter(|_| writers.show(Part::Grains)).map(BodyFields::spheres);
     let chains = writers.show(Part::Chains).then(|| chains(view, &contacts, strong_only));
     let walls = writers.show(Part::Walls).then(|| {
@@ -162,6 +163,7 @@ struct BodyFields<'a> {
     force: Vec<dem::Vec3>,
     fragments: Vec<u32>,
     more: &'a [&'static str],
+    materials: &'a MaterialsPart,
 }
 
 struct Item {
@@ -173,7 +175,7 @@ impl<'a> BodyFields<'a> {
     fn of(
         view: GrainsView<'a>,
         contacts: &[dem::measure::ContactRecord],
-        more: &'a [&'static str],
+        (materials, more): (&'a MaterialsPart, &'a [&'static str]),
     ) -> BodyFields<'a> {
         BodyFields {
             view,
@@ -182,6 +184,7 @@ impl<'a> BodyFields<'a> {
             force: dem::measure::contact_forces_of(view.model, view.state, contacts),
             fragments: dem::measure::fragments(view.model, view.state).of,
             more,
+            materials,
         }
     }
 
@@ -244,6 +247,7 @@ impl<'a> BodyFields<'a> {
                 vectors(&|b| from[b])
             }
             "acceleration" => vectors(&|b| self.force[b] / model.mass(b) + model.gravity()),
+            "stiffness_factor" => numbers(&|b| self.materials.stiffness_factor(model.material(b))),
             "broken_by_shear" => broken(&|b| b.mode == BreakMode::Shear),
             "broken_bonds" => broken(&|_| true),
             other => unreachable!("the field {other} of bodies has no values"),

@@ -157,7 +157,7 @@ pub struct StiffnessSpreadTable {
     pub seed: Option<u64>,
 }
 
-/// Distribution of strengths and stiffnesses.
+/// Distribution of strengths or stiffnesses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SpreadKind {

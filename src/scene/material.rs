@@ -1,5 +1,6 @@
 //! Scene tables of contact materials and material pairs.
 
+use super::bonds::SpreadKind;
 use super::units::{Adhesion, Angle, Density, Quantity, Stiffness, Stress};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -19,6 +20,8 @@ pub struct GrainMaterial {
     pub normal: Option<String>,
     /// Young's modulus, of Hertzian laws [Pa]; default none; > 0.
     pub young: Option<Quantity<Stress>>,
+    /// Spread of `young` or `stiffness` over the grains; default none.
+    pub stiffness_spread: Option<GrainStiffnessSpread>,
     /// Poisson's ratio; > −1, ≤ 0.5; with `young`.
     pub poisson: Option<f64>,
     /// Factor on edge stiffness, 3.14 for line contact; default 1; 0.01–100; with `young`.
@@ -47,6 +50,20 @@ pub struct GrainMaterial {
     /// Largest twisting moment over R F; default 0; ≥ 0.
     #[serde(default)]
     pub twisting_friction: f64,
+}
+
+/// Spread of stiffness over the grains of each group, in 16 classes of equal number.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GrainStiffnessSpread {
+    /// Distribution.
+    pub kind: SpreadKind,
+    /// Standard deviation over mean; > 0, ≤ 10; with `"normal"`.
+    pub deviation: Option<f64>,
+    /// Weibull modulus; > 0.05, ≤ 1000; with `"weibull"`.
+    pub modulus: Option<f64>,
+    /// Random seed; default 1.
+    pub seed: Option<u64>,
 }
 
 /// `[[contact]]`: constants of one pair of materials.

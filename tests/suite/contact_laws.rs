@@ -1,6 +1,7 @@
 //! Contact laws in scenes.
 
 use super::support::{Folder, Table, json, repository, run, trackbed};
+use trackbed::results::grains::GrainFile;
 
 fn sources(summary: &serde_json::Value) -> Vec<String> {
     let list = summary["sources"].as_array().unwrap();
@@ -219,4 +220,46 @@ fn asperities_out_of_place_are_refused() {
     let outcome = run(&scene, &folder.join("out"), &hertz);
     let message = "found, but it has no effect without a contact law with asperities";
     assert!(outcome.code == 2 && outcome.stderr.contains(message), "{outcome:?}");
+}
+
+/// Overlap of a ball at rest after Hertz; 16 classes of four balls keep mean and 99 % of the standard deviation.
+#[test]
+fn stiffness_spreads_over_grains() {
+    let folder = Folder::new("stiffness_spread");
+    let scene = repository().join("inputs/grains/stiffness_spread.toml");
+    run(&scene, &folder.join("out"), &["output.frames=1"]).good();
+    let file = GrainFile::open(&folder.join("out/frames/grains_00001.vtp")).unwrap();
+    let factors = file.field("stiffness_factor").unwrap();
+    let radius: f64 = 0.02;
+    let weight = 1200.0 * 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * 9.81;
+    for (centre, factor) in file.centres().chunks_exact(3).zip(&factors) {
+        let modulus = factor * 1e6 / (1.0 - 0.49 * 0.49);
+        let overlap = (0.75 * weight / (modulus * radius.sqrt())).powf(2.0 / 3.0);
+        assert!((radius - centre[2] - overlap).abs() < 0.01 * overlap, "{centre:?} of factor {factor}");
+    }
+    let mut classes = factors.clone();
+    classes.sort_by(f64::total_cmp);
+    assert!(classes.chunks_exact(4).all(|four| four[0] == four[3]), "{classes:?}");
+    let mean = factors.iter().sum::<f64>() / 64.0;
+    let deviation = (factors.iter().map(|f| (f - mean).powi(2)).sum::<f64>() / 64.0).sqrt();
+    assert!((mean - 1.0).abs() < 1e-3 && (0.197..0.2).contains(&deviation), "{mean}, {deviation}");
+    // Neighbours in space differ: the order is random.
+    assert!(factors.windows(2).filter(|pair| pair[0] == pair[1]).count() < 12, "{factors:?}");
+    for (set, expected) in [
+        (
+            "material.1.stiffness_spread={ kind = \"normal\", deviation = 0.1 }",
+            "material.1.stiffness_spread: found, but it has no effect without `young` or `stiffness`",
+        ),
+        (
+            "material.0.stiffness_spread={ kind = \"normal\", modulus = 3 }",
+            "material.0.stiffness_spread: found other keys",
+        ),
+        (
+            "material.0.stiffness_spread.deviation=0",
+            "material.0.stiffness_spread.deviation: found 0, expected above 0",
+        ),
+    ] {
+        let said = trackbed(["check", &scene.display().to_string(), "--set", set]);
+        assert!(said.code == 2 && said.stderr.contains(expected), "{}", said.stderr);
+    }
 }

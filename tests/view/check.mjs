@@ -16,6 +16,7 @@ import { onStart } from './start.mjs';
 import { onStone } from './stone.mjs';
 import { onTables } from './tables.mjs';
 import { onTrack } from './track.mjs';
+import { onWater } from './water.mjs';
 
 const [program, track, stone, picture] = process.argv.slice(2);
 const dir = fs.mkdtempSync(path.join(os.tmpdir(), 'trackbed_view_'));
@@ -140,6 +141,7 @@ try {
   });
   await third.stop();
   await onSolid(browser, program, dir, faults);
+  await onWater(browser, program, dir, faults);
   await onScenes(browser, program, dir, faults);
   await check('faults', 'no errors of scripts, no requests to elsewhere', () => {
     expect(faults.length === 0, faults.join('; '));

@@ -180,6 +180,7 @@ fn has_extra(scene: &Scene, name: &str) -> bool {
                 let held = scene.grains.iter().any(|g| g.prescribed_velocity.is_some());
                 !held && scene.wind.is_none() && scene.water.is_none() && scene.track.is_none()
             }
+            "stiffness_factor" => scene.material.iter().any(|m| m.stiffness_spread.is_some()),
             _ => !scene.bond.is_empty(),
         }
 }
@@ -188,7 +189,7 @@ fn extra(scene: &Scene, o: &Output) -> Vec<&'static str> {
     let wanted = |name: &str| match &o.fields {
         Some(named) => named.iter().any(|n| n == name),
         None => match name {
-            "broken_bonds" => true,
+            "broken_bonds" | "stiffness_factor" => true,
             "displacement" | "initial_position" => scene.runout.is_some(),
             _ => false,
         },

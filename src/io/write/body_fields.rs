@@ -27,7 +27,7 @@ pub struct BodyField {
 use Written::{Always, ByDefault, OnRequest};
 
 /// All fields.
-pub const BODY_FIELDS: [BodyField; 15] = [
+pub const BODY_FIELDS: [BodyField; 16] = [
     field("radius", "Radius", "m", Always),
     field("velocity", "Velocity", "m/s", ByDefault),
     field("spin", "Spin", "rad/s", ByDefault),
@@ -41,6 +41,7 @@ pub const BODY_FIELDS: [BodyField; 15] = [
     field("displacement", "Displacement", "m", OnRequest),
     field("initial_position", "Initial position", "m", OnRequest),
     field("acceleration", "Acceleration", "m/s²", OnRequest),
+    field("stiffness_factor", "Stiffness over mean", "", OnRequest),
     field("broken_bonds", "Broken bonds", "", OnRequest),
     field("broken_by_shear", "Bonds broken by shear", "", OnRequest),
 ];

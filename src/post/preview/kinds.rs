@@ -2,7 +2,8 @@
 
 use super::context::Context;
 use super::item::Item;
-use super::{grains, observed, solid, walls};
+use super::{grains, observed, solid, structures, walls};
+use crate::water;
 
 /// Kind of objects. One entry is all that a new kind needs.
 pub struct Kind {
@@ -22,7 +23,7 @@ pub struct Kind {
 }
 
 /// All kinds. Later ones extend to the bounds of earlier ones.
-pub static KINDS: [Kind; 16] = {
+pub static KINDS: [Kind; 17] = {
     const fn kind(
         (word, label, part): (&'static str, &'static str, &'static str),
         (shown, opacity, colour): (bool, f32, &'static str),
@@ -41,9 +42,14 @@ pub static KINDS: [Kind; 16] = {
         kind(("absorbing", "Absorbing boundaries", "marks"), (true, 0.6, "cc79a7"), solid::absorbing),
         kind(("probes", "Probes", "marks"), (true, 1.0, "cc0077"), observed::probes),
         kind(("boxes", "Measuring boxes", "marks"), (true, 1.0, "8a2be2"), observed::boxes),
+        kind(
+            ("structures", "Structures with recorded loads", "marks"),
+            (true, 1.0, "7a3e9d"),
+            structures::all,
+        ),
         kind(("flow", "Inlets, outlets", "marks"), (true, 1.0, "218f33"), grains::flow),
         kind(("walls", "Walls", "boundary"), (true, 0.25, "7d8fa3"), walls::walls),
-        kind(("water", "Water", "boundary"), (true, 0.3, "56b4e9"), observed::water),
+        kind(("water", "Water", "water"), (true, water::OPACITY, water::COLOUR), observed::water),
         kind(("periodic", "Periodic borders", "boundary"), (true, 0.15, "cc79a7"), observed::periodic),
         kind(("contact", "Contact faces of the solid", "sets"), (false, 1.0, "7fd6bd"), solid::contact),
         kind(("sets", "Sets of the mesh", "sets"), (false, 1.0, "e69f00"), solid::sets),

@@ -8,6 +8,7 @@ mod observed;
 mod palette;
 mod solid;
 mod source;
+mod structures;
 mod walls;
 
 pub use item::{Item, Shape};

@@ -3,7 +3,8 @@
 use super::context::Context;
 use super::item::{Item, Shape};
 use super::walls::rectangle;
-use trackbed_dem::Vec3;
+use crate::water::Surface;
+use trackbed_dem::{BodyForce, Vec3};
 use trackbed_input::model::Observed;
 use trackbed_input::scene::units::vector;
 
@@ -58,10 +59,13 @@ pub fn boxes(c: &Context) -> Vec<Item> {
 }
 
 pub fn water(c: &Context) -> Vec<Item> {
-    let Some(water) = &c.scene.water else { return Vec::new() };
-    let level = Vec3::new(0.0, 0.0, water.level.si);
-    let name = format!("level {} m", water.level.si);
-    vec![Item::new("water", name, rectangle(&level, &Vec3::z(), c.bounds))]
+    let Some(BodyForce::Water(water)) = c.job.grains.as_ref().and_then(|part| part.water.as_ref()) else {
+        return Vec::new();
+    };
+    let surface = Surface::new(water, c.bounds);
+    let (points, triangles, edges) = (surface.points(0.0), surface.triangles(), surface.border());
+    let shape = Shape { points, triangles, edges, ..Shape::default() };
+    vec![Item::new("water", surface.name(), shape)]
 }
 
 pub fn periodic(c: &Context) -> Vec<Item> {

@@ -19,6 +19,8 @@ pub enum Part {
     Boundary,
     /// Sleepers and rails.
     Track,
+    /// Water surface.
+    Water,
     /// Supports, loads, boxes, probes of a scene.
     Marks,
     /// Sets of the mesh of a scene.
@@ -35,12 +37,13 @@ pub enum Part {
     Scale,
 }
 
-const PARTS: [(Part, &str); 12] = [
+const PARTS: [(Part, &str); 13] = [
     (Part::Grains, "grains"),
     (Part::Chains, "chains"),
     (Part::Solid, "solid"),
     (Part::Boundary, "boundary"),
     (Part::Track, "track"),
+    (Part::Water, "water"),
     (Part::Marks, "marks"),
     (Part::Sets, "sets"),
     (Part::Edges, "edges"),
@@ -49,7 +52,7 @@ const PARTS: [(Part, &str); 12] = [
     (Part::Axes, "axes"),
     (Part::Scale, "scale"),
 ];
-const BODIES: usize = 7;
+const BODIES: usize = 8;
 
 /// View directions of the viewer; z points up.
 const SIDES: [(&str, [f32; 3]); 7] = [

@@ -140,6 +140,7 @@ impl<'a> Parts<'a> {
         parts.chains(moment, size);
         parts.solid(moment);
         parts.walls(moment);
+        parts.water(moment);
         Ok(parts)
     }
 

@@ -52,6 +52,7 @@ fn part(item: &Item) -> Part {
         "grains" => Part::Grains,
         "track" => Part::Track,
         "boundary" => Part::Boundary,
+        "water" => Part::Water,
         "sets" => Part::Sets,
         _ => Part::Marks,
     }

@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 use std::path::Path;
 
+use crate::water::Surface;
+
 use super::options::{Frames, Options, Part, joined, refuse};
 use trackbed_io::columns::{
     cycles::CYCLE,
@@ -26,6 +28,8 @@ pub struct Run {
     pub skin: Option<Skin>,
     pub grain_fields: Vec<String>,
     pub solid_fields: Vec<String>,
+    /// Water surface.
+    pub water: Option<Surface>,
     history: Option<Table>,
     cycles: Option<Table>,
 }
@@ -40,6 +44,8 @@ pub struct Wanted {
 }
 
 pub struct Moment {
+    /// Time [s].
+    pub time: f64,
     pub grains: Option<GrainFile>,
     pub grain_values: Option<Vec<f64>>,
     pub chains: Option<Chains>,
@@ -85,7 +91,8 @@ impl Run {
         }
         let table = |name: &str| series::own(dir, name).map_or(Ok(None), |file| Table::read(&file));
         let (history, cycles) = (table("history.csv")?, table("cycles.csv")?);
-        Ok(Run { about: About::of(dir), frames, skin, grain_fields, solid_fields, history, cycles })
+        let (about, water) = (About::of(dir), Surface::of_run(dir, &frames)?);
+        Ok(Run { about, frames, skin, grain_fields, solid_fields, water, history, cycles })
     }
 
     pub fn has(&self, part: series::Part) -> bool {
@@ -254,7 +261,8 @@ impl Run {
             };
             displacement = Some(u);
         }
-        Ok(Moment { grains, grain_values, chains, walls, stone_values, displacement, solid_values })
+        let time = self.frames[frame].time;
+        Ok(Moment { time, grains, grain_values, chains, walls, stone_values, displacement, solid_values })
     }
 
     /// Value per grain; `None` for a constant colour.

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use trackbed_io::write::{BODY_FIELDS, MADE_FIELDS};
 
 /// Modules by import name. The first two are three.js (licence: `web/three.LICENSE.txt`).
-const MODULES: [(&str, &str); 30] = [
+const MODULES: [(&str, &str); 31] = [
     ("three", include_str!("web/three.module.min.js")),
     ("orbit", include_str!("web/OrbitControls.js")),
     ("chunk", include_str!("web/chunk.js")),
@@ -21,6 +21,7 @@ const MODULES: [(&str, &str); 30] = [
     ("chains", include_str!("web/chains.js")),
     ("walls", include_str!("web/walls.js")),
     ("solid", include_str!("web/solid.js")),
+    ("water", include_str!("web/water.js")),
     ("model", include_str!("web/model.js")),
     ("outline", include_str!("web/outline.js")),
     ("stage", include_str!("web/stage.js")),

@@ -15,6 +15,7 @@ use serde_json::{Value, json};
 
 use super::chunk::{Blocks, Chunk, Coding};
 use super::{grains, lines, names, solid, tables};
+use crate::water::Surface;
 use trackbed_io::failure::Failure;
 use trackbed_io::results::grains::{Bodies, GrainFile};
 use trackbed_io::results::lines::{Chains, Walls};
@@ -177,6 +178,7 @@ impl Results {
         chunk.meta("groups", groups);
         chunk.meta("materials", materials);
         chunk.meta("lines", lines);
+        chunk.meta("water", json!(Surface::of_run(&self.dir, &self.frames)?.map(|water| water.about())));
         Ok(chunk.finish())
     }
 }

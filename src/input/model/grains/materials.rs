@@ -23,12 +23,21 @@ pub struct MaterialsPart {
     /// Materials of grains.
     pub of_grains: Vec<usize>,
     pub(super) names: Vec<String>,
+    /// Stiffness over the mean, by material; 1 beyond its end.
+    pub(super) factors: Vec<f64>,
 }
 
 impl MaterialsPart {
     /// Returns grain materials that may contact a solid. Rigid sleepers contact grains only.
     pub fn touching(&self) -> impl Iterator<Item = (usize, String)> {
         self.of_grains.iter().map(|&m| (m, self.names[m].clone()))
+    }
+
+    /// Returns the corner strength above which crushing of a material, `factor` times as stiff, would gain energy [Pa].
+    pub(super) fn greatest_strength(&self, material: usize, factor: f64) -> f64 {
+        let Material { young, poisson, corner_angle, .. } = self.all[material];
+        let modulus = young.map_or(f64::INFINITY, |young| 0.5 * factor * young / (1.0 - poisson * poisson));
+        conical_damage::greatest_strength(modulus, corner_angle)
     }
 
     /// Returns sources of contact laws and time integration.
@@ -59,7 +68,7 @@ pub(super) fn build(scene: &Table<Scene>) -> Result<MaterialsPart, SceneError> {
     let pairs = pairs(scene)?;
     laws::check_laws(scene, &all, &pairs)?;
     let names = scene.material.iter().map(|m| m.name.clone()).collect();
-    Ok(MaterialsPart { all, pairs, of_grains: Vec::new(), names })
+    Ok(MaterialsPart { all, pairs, of_grains: Vec::new(), names, factors: Vec::new() })
 }
 
 fn materials(scene: &Table<Scene>) -> Result<Vec<Material>, SceneError> {

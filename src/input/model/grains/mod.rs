@@ -20,6 +20,7 @@ mod refused;
 mod runout;
 mod sources;
 mod specimen;
+mod spread;
 mod steps;
 mod structures;
 mod track;
@@ -31,7 +32,7 @@ use crate::scene::{Scene, Table};
 use check::find;
 pub(in crate::model) use check::region;
 use steps::StepPlan;
-use trackbed_dem::Vec3;
+use trackbed_dem::{BodyForce, Vec3};
 use trackbed_io::failure::Failure;
 
 pub use bonds::{check_gaps, check_joined};
@@ -41,7 +42,7 @@ pub use flow::{FlowPlan, InletPlan, OutletPlan, OutletRegion};
 pub use footprint::Footprint;
 pub use groups::{FilledGroup, GradedGroup, GroupsPart};
 pub use growth::inside_of;
-pub use materials::parameters;
+pub use materials::{MaterialsPart, parameters};
 pub use measure::{MeasurePlan, RadialPlan};
 pub use overlap::{LARGEST_OVERLAP, check_overlaps, deepest_overlap, thrown};
 pub use part::{GrainsPart, PackingPlan, SurfacePlan};
@@ -51,6 +52,7 @@ pub use runout::{MOST_CELLS, RunoutPlan};
 pub use specimen::{EventPlan, Platen, SpecimenPlan};
 pub use structures::StructurePlan;
 pub use walls::is_plain;
+pub use water::of_scene as water_of;
 
 /// Resolves `[[material]]`, `[[contact]]`, `[[grains]]`, `[[walls]]`, `[deposition]` and `[track]`.
 ///
@@ -67,6 +69,7 @@ pub fn build(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<GrainsPart, Fail
     let steps = StepPlan { step, impact_speed, skin, mass_factor: steps::mass_factor(scene)? };
     let mut bonds = bonds::kinds(scene)?;
     let mut groups = groups::build(scene, &mut materials, &mut bonds)?;
+    spread::spread(scene, &mut groups, &mut materials)?;
     let periodic = periodic::build(scene, &groups)?;
     let flow = flow::build(scene, &groups, &periodic)?;
     let walls = walls::build(scene)?;
@@ -75,7 +78,7 @@ pub fn build(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<GrainsPart, Fail
     let settling = deposition.as_ref();
     let compaction = compaction::build(scene, settling, &walls, &mut groups)?;
     let wind = wind::build(scene)?;
-    let water = water::build(scene, &gravity)?;
+    let water = water::build(scene, &gravity)?.map(BodyForce::Water);
     let measures = measure::build(scene)?;
     let runout = runout::build(scene, &groups)?;
     let specimen = specimen::build(scene, &groups, &walls)?;

@@ -1,10 +1,19 @@
 //! `[water]` resolved.
 
+use crate::scene::units::vector;
 use crate::scene::water::{DragArea, Water as Written};
-use crate::scene::{Scene, SceneError, Table};
-use trackbed_dem::{BodyForce, DragArea as Area, Measured, Vec3, Water, Wave, WaveError};
+use crate::scene::{Document, Scene, SceneError, Table};
+use trackbed_dem::{DragArea as Area, Measured, Vec3, Water, Wave, WaveError};
 
-pub(super) fn build(scene: &Table<Scene>, gravity: &Vec3) -> Result<Option<BodyForce>, SceneError> {
+/// Water of a scene, without the rest of it.
+///
+/// # Errors
+/// Values out of range.
+pub fn of_scene(document: &Document, scene: &Scene) -> Result<Option<Water>, SceneError> {
+    build(&Table::root(document, scene), &Vec3::from(vector(&scene.gravity)))
+}
+
+pub(super) fn build(scene: &Table<Scene>, gravity: &Vec3) -> Result<Option<Water>, SceneError> {
     let Some(water) = scene.optional("water", &scene.water) else { return Ok(None) };
     if !(gravity.z < 0.0 && gravity.x == 0.0 && gravity.y == 0.0) {
         let found = format!("[{}, {}, {}] m/s2", gravity.x, gravity.y, gravity.z);
@@ -23,7 +32,7 @@ pub(super) fn build(scene: &Table<Scene>, gravity: &Vec3) -> Result<Option<BodyF
     ] {
         water.check(key, value, |c| (0.0..=100.0).contains(&c), "0 to 100")?;
     }
-    Ok(Some(BodyForce::Water(Water {
+    Ok(Some(Water {
         level: water.level.si,
         density,
         current,
@@ -36,7 +45,7 @@ pub(super) fn build(scene: &Table<Scene>, gravity: &Vec3) -> Result<Option<BodyF
         skin_drag: water.skin_drag,
         drag_moment: water.drag_moment,
         added_mass: water.added_mass,
-    })))
+    }))
 }
 
 fn wave(water: &Table<Written>, current: [f64; 2], gravity: f64) -> Result<Option<Wave>, SceneError> {

@@ -51,7 +51,9 @@ impl Maker<'_> {
                 if deviation > 0.0 {
                     self.line(&format!("{table} = {{ kind = \"normal\", deviation = {deviation:?} }}"));
                 }
-                self.used(key, &format!("bond.{table}"));
+                if key == "BSIGMA" {
+                    self.used(key, &format!("bond.{table}"));
+                }
             }
         }
         self.line("");

@@ -45,7 +45,7 @@ pub fn scene(deck: &Deck, output: &Path, options: &Options) -> Result<Made, Fail
     if bonded {
         maker.bonds()?;
     } else {
-        for key in ["BOND_MODEL", "RPBN", "RPBS", "BONDNS", "BSIGMA", "YMSIGMA", strength(deck)] {
+        for key in ["BOND_MODEL", "RPBN", "RPBS", "BONDNS", "BSIGMA", strength(deck)] {
             maker.left(key, "the strength of the bonds is 0: there are none");
         }
     }
@@ -109,6 +109,14 @@ impl Maker<'_> {
             false => format!("stiffness = {:?}\ntangential_ratio = {ratio:?}", self.stiffness),
         };
         self.line(&spring);
+        if d.has("YMSIGMA") {
+            let deviation = d.number("YMSIGMA", |s| s >= 0.0, "0 or more")? / young;
+            if deviation > 0.0 {
+                self.line(&format!("stiffness_spread = {{ kind = \"normal\", deviation = {deviation:?} }}"));
+            }
+            let bonds = if self.bonded { " and that of bonds" } else { "" };
+            self.used("YMSIGMA", &format!("stiffness_spread of grains{bonds}"));
+        }
         let rolling_line = rolling.map_or(String::new(), |a| format!("rolling_friction = {a:?}\n"));
         self.line(&format!("tangential_damping_ratio = {dashpots:?}\nfriction = {friction:?}\nrestitution = {restitution:?}\n{rolling_line}"));
         // Walls as stiff as grains: the pair then has the grain stiffness.

@@ -8,6 +8,7 @@ use super::super::run::{Moment, of_elements};
 use super::super::sheet::{Key, Legend};
 use super::Parts;
 use super::plain;
+use crate::water;
 use std::collections::{BTreeMap, BTreeSet};
 use trackbed_io::results::section::{Point, outlines, section};
 use trackbed_io::write::WallKind;
@@ -23,6 +24,7 @@ const CONTOUR: f32 = 0.38;
 /// Most triangles of a wall with visible edges.
 const MOST_EDGES: usize = 400;
 const SOLID_BODY: u32 = 0;
+const WATER: u32 = u32::MAX;
 
 struct Looks {
     first: u16,
@@ -152,7 +154,7 @@ impl Parts<'_> {
         for corner in triangles.iter().flat_map(|t| &t.corners) {
             (low, high) = (low.inf(corner), high.sup(corner));
         }
-        if part != Part::Boundary {
+        if part != Part::Boundary && part != Part::Water {
             self.boxed(low, high);
         }
         self.scene.triangles.extend(triangles);
@@ -174,6 +176,19 @@ impl Parts<'_> {
             }
             Some(_) => alike(add(Paint::Map { table, range: range.map(|v| v as f32), bands: 0 })),
         }
+    }
+
+    pub(super) fn water(&mut self, moment: &Moment) {
+        let Some(surface) = self.run.water.filter(|_| self.options.shows(Part::Water, true)) else { return };
+        let opacity = self.opacity(Part::Water, water::OPACITY);
+        let look = self.scene.look(Look { paint: Paint::Own(plain(water::COLOUR)), opacity, relief: 1.0 });
+        let points = surface.points(moment.time);
+        let at = |n: u32| self.near(&points[n as usize]);
+        let triangle = |n: [u32; 3]| Triangle { corners: n.map(at), values: [0.0; 3], look, body: WATER };
+        let triangles = surface.triangles().into_iter().map(triangle).collect();
+        let border = surface.border().into_iter().map(|n| Line { ends: n.map(at), look });
+        let lines = if self.options.shows(Part::Edges, true) { border.collect() } else { Vec::new() };
+        self.cut(Part::Water, triangles, lines);
     }
 
     pub(super) fn walls(&mut self, moment: &Moment) {

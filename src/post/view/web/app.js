@@ -57,6 +57,8 @@ export class App extends Parts {
     state.chains.show = state.parts.chains && !state.parts.grains;
     state.walls.boundary.show = !state.parts.solid;
     if (solid) this.solid.mesh(solid);
+    state.parts.water = Boolean(meta.water);
+    this.water.take(meta.water, meta.origin);
     state.parts.model = Boolean(model);
     if (model) this.model.take(meta.model, model);
     document.title = `${state.title} – trackbed`;
@@ -231,6 +233,10 @@ export class App extends Parts {
       await this.once('stones', chosen(state.grains), async () => this.paintStones(k));
       this.walls.look(state.walls, state.grains);
       this.section();
+    }
+    if (state.parts.water) {
+      this.water.frame(state.time);
+      this.water.look(state.water);
     }
     if (has.includes('solid') && this.solidSkin) await this.updateSolid(k);
     if (state.parts.model) {

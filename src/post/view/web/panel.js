@@ -53,6 +53,11 @@ const sections = (app) => [
     ['colour', 'walls.track.colour', 'Sleeper colour'],
     ['range', 'walls.track.opacity', 'Opacity', [0.05, 1, 0.05]],
   ]],
+  ['Water', 'water', [
+    ['check', 'water.show', 'Show'],
+    ['colour', 'water.colour', 'Colour'],
+    ['range', 'water.opacity', 'Opacity', [0.05, 1, 0.05]],
+  ]],
   ['View', 'view', [
     ['select', 'view.side', 'From', () => ['oblique', 'front', 'back', 'left', 'right', 'top', 'bottom'].map((s) => [s, s])],
     ['select', 'view.focus', 'Frame', () => [['all', 'everything'], ['grains', 'grains']]],
@@ -168,7 +173,7 @@ export class Panel {
     document.getElementById('solid-factor').max = this.app.largestFactor ?? 100;
     for (const { path, input, write } of this.inputs) write(input, at(state, path));
     for (const [holds, made] of this.conditions) made.forEach((row) => { row.hidden = !holds(state); });
-    for (const part of ['grains', 'solid', 'chains', 'walls', 'reference']) {
+    for (const part of ['grains', 'solid', 'chains', 'walls', 'water', 'reference']) {
       const has = part === 'reference' ? state.parts.solid || state.parts.grains : state.parts[part];
       document.getElementById(`part-${part}`).hidden = !has;
     }

@@ -5,6 +5,7 @@ import { Grains, label as grainLabel, unit as grainUnit } from 'grains';
 import { Model } from 'model';
 import { Solid, DISPLACEMENTS, label as solidLabel } from 'solid';
 import { Walls } from 'walls';
+import { Water } from 'water';
 
 /** Settings of the user; limits from the data are left out. */
 export const chosen = (look) => (look.auto ? { ...look, min: 0, max: 0 } : look);
@@ -21,7 +22,8 @@ export class Parts {
     this.walls = new Walls();
     this.solid = new Solid();
     this.model = new Model();
-    this.stage.scene.add(this.model.group, this.solid.group, this.chains.group, this.grains.group, this.walls.group);
+    this.water = new Water();
+    this.stage.scene.add(this.model.group, this.solid.group, this.chains.group, this.grains.group, this.walls.group, this.water.group);
     this.shown = {};
     this.common = {};
     this.largestFactor = this.size = this.base = null;

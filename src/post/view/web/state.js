@@ -4,7 +4,7 @@ export function initial() {
   return {
     run: '', title: '', status: '', frame: 0, frames: 0, time: 0, times: [],
     playing: 0, speed: 10, loading: '', error: '',
-    parts: { grains: false, chains: false, walls: false, solid: false, model: false },
+    parts: { grains: false, chains: false, walls: false, solid: false, model: false, water: false },
     view: {
       side: 'oblique', focus: 'all', projection: 'perspective', light: 'camera', background: '#ffffff', autoRotate: false,
       legends: true, plots: true, flat: null,
@@ -24,6 +24,7 @@ export function initial() {
       boundary: { show: false, colour: '#7d8fa3', opacity: 0.25 },
       track: { show: true, colour: '#8f959c', opacity: 1 }, rail: '#5b4a3f', stone: '#a89f91',
     },
+    water: { show: true, colour: '#56b4e9', opacity: 0.35 },
     model: { kinds: {}, hidden: {} },
     picked: null, pickedQuantity: '', historyQuantity: '', legends: [], saved: null,
   };

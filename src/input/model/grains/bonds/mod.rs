@@ -5,6 +5,7 @@ mod part;
 mod rule;
 
 pub use part::BondPart;
+pub(super) use rule::law;
 
 use super::deposition::DepositionPlan;
 use crate::scene::{Document, Scene, SceneError, Table};

@@ -85,7 +85,8 @@ fn source(table: &Table<BondTable>, between: bool, bodies: &Joinable<'_>) -> Res
     Ok(source)
 }
 
-fn law<T>(
+/// Returns the distribution of a table.
+pub(in crate::model::grains) fn law<T>(
     table: &Table<T>,
     kind: SpreadKind,
     deviation: Option<f64>,
