@@ -1603,6 +1603,9 @@ class Runout(TypedDict, total=False):
     # Names of sliding groups; default all without `prescribed_velocity`.
     groups: Sequence[str]
 
+    # Whether cells that grains pass are written to `passage.csv`; default false; with `cell`.
+    passage: Bool
+
     # Mass fraction behind the front; default 0.99; 0.5–1.
     share: Float
 

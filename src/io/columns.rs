@@ -125,7 +125,7 @@ pub struct Table {
 }
 
 /// Tables that runs write.
-pub const TABLES: [&Table; 14] = [
+pub const TABLES: [&Table; 15] = [
     history::TABLE,
     cycles::TABLE,
     push::TABLE,
@@ -136,6 +136,7 @@ pub const TABLES: [&Table; 14] = [
     outline::TABLE,
     fragments::TABLE,
     origins::TABLE,
+    passage::TABLE,
     nodes::TABLE,
     gauss::TABLE,
     safety::TABLE,
@@ -368,6 +369,18 @@ pub mod origins {
         Y: Scalar "y" "m" "position at the end";
         Z: Scalar "z" "m" "position at the end";
         FRAGMENT: Scalar "fragment" "" "number of the fragment";
+    }
+}
+
+/// Columns of `passage.csv`.
+pub mod passage {
+    columns! { "passage.csv";
+        X: Scalar "x" "m" "middle of the cell";
+        Y: Scalar "y" "m" "middle of the cell";
+        GROUND: Scalar "ground" "m" "height of the ground; 0 without";
+        ENTRIES: Scalar "entries" "" "number of grains that entered the cell";
+        ENERGY: Scalar "energy" "J" "largest kinetic energy of a grain in the cell";
+        DEPTH: Scalar "depth" "m" "depth of the deposit";
     }
 }
 

@@ -3,6 +3,7 @@
 //! [`Markup`] escapes all text. [`PreEscaped`] is only for program constants and plots, which escape their text.
 
 use super::quantity::{Scale, exact, number, scale, with_unit};
+use base64::prelude::{BASE64_STANDARD, Engine};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::path::{Path, PathBuf};
 use trackbed_io::plot::minus;
@@ -125,6 +126,20 @@ pub fn shown_path(path: &Path) -> PathBuf {
 /// Formats a text paragraph.
 pub fn paragraph(text: &str) -> Markup {
     html! { p class="note" { (text) } "\n" }
+}
+
+/// Formats a picture, such as a `png`, with its caption.
+pub fn picture(kind: &str, bytes: &[u8], caption: &str) -> Markup {
+    // Base64 needs no escaping; XML closes the element.
+    let image =
+        format!("<img alt=\"Picture\" src=\"data:image/{kind};base64,{}\"/>", BASE64_STANDARD.encode(bytes));
+    html! {
+        figure class="picture" {
+            figcaption { (caption) } "\n"
+            (PreEscaped(image)) "\n"
+        }
+        "\n"
+    }
 }
 
 /// Adds a heading to non-empty content.

@@ -14,6 +14,9 @@ pub struct Runout {
     pub groups: Option<Vec<String>>,
     /// Cell of the depth map [m]; default twice mean diameter; > 0.
     pub cell: Option<Quantity<Length>>,
+    /// Whether cells that grains pass are written to `passage.csv`; default false; with `cell`.
+    #[serde(default)]
+    pub passage: bool,
     /// Smallest depth of the deposit [m]; default half mean diameter; > 0.
     pub depth: Option<Quantity<Length>>,
     /// Mass fraction behind the front; default 0.99; 0.5–1.

@@ -2,6 +2,7 @@
 
 use super::factor::Factor;
 use super::file::Combine;
+use super::hazard::CaseMaps;
 use super::outcome::Outcome;
 use super::plan::Plan;
 use super::statistics::{Regression, rank_correlation};
@@ -27,6 +28,9 @@ pub struct Analysis {
     pub failed: Vec<String>,
     /// Whether the parameters are sampled.
     pub sampled: bool,
+    /// Hazard maps of cases.
+    #[serde(default)]
+    pub hazard: Vec<CaseMaps>,
 }
 
 /// Name and unit.
@@ -136,6 +140,7 @@ impl Analysis {
             points,
             sensitivities,
             best,
+            hazard: Vec::new(),
         }
     }
 }

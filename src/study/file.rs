@@ -39,6 +39,18 @@ pub struct StudyFile {
     pub tolerance: Option<f64>,
     /// Concurrent runs; default: number of cores.
     pub jobs: Option<usize>,
+    /// Maps of reach, energy and depth over the runs of each case.
+    pub hazard: Option<HazardTable>,
+}
+
+/// Maps over the runs of each case.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HazardTable {
+    /// Quantile of the energy map; default 0.95.
+    pub quantile: Option<f64>,
+    /// Energies whose exceedance is mapped [J]; default 30 and 300 kJ.
+    pub energies: Option<Vec<f64>>,
 }
 
 fn one() -> f64 {

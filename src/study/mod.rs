@@ -9,8 +9,10 @@ mod design;
 mod factor;
 mod figure;
 mod file;
+mod hazard;
 mod label;
 mod layout;
+mod maps;
 mod outcome;
 mod page;
 mod parameter;
@@ -279,13 +281,15 @@ fn csv(text: Result<String, csv::Error>) -> Result<String, Failure> {
 
 fn tables(plan: &Plan, store: &Store, found: &[Found]) -> Result<Finished, Failure> {
     let outcome = Outcome::of(plan, store, found);
-    let analysis = Analysis::of(plan, &outcome);
+    let maps = maps::write(plan, store, &outcome, found)?;
+    let analysis = Analysis { hazard: maps, ..Analysis::of(plan, &outcome) };
     write_files(plan, store, &outcome, &analysis)?;
     let table = match plan.has_reference() {
         true => text::printed(plan, &outcome, PRINTED) + &summary::printed_best(&analysis),
         false => summary::printed(&analysis, PRINTED),
     };
     let mut lines = format!("{}\n{table}", plan.title);
+    lines += &summary::printed_hazard(&analysis);
     for remark in text::remarks(plan, &outcome) {
         lines += &format!("warning: {remark}\n");
     }

@@ -2,6 +2,7 @@
 
 use super::analysis::Analysis;
 use super::figure;
+use super::hazard;
 use super::layout::{Cell, Table};
 use super::summary;
 use maud::{Markup, html};
@@ -10,7 +11,7 @@ use std::path::{Path, PathBuf};
 use trackbed_io::failure::Failure;
 use trackbed_io::read::source;
 use trackbed_report::page::{
-    Cell as PageCell, Section, facts_table, headed, joined, paragraph, plots, table,
+    Cell as PageCell, Section, facts_table, headed, joined, paragraph, picture, plots, table,
 };
 use trackbed_report::{self as report, Options};
 
@@ -40,6 +41,7 @@ pub fn write(options: &Options) -> Result<PathBuf, Failure> {
     let sections = [
         overview(&study, &analysis),
         failed(&analysis),
+        hazard_maps(dir, &analysis),
         targets(&analysis),
         sensitivity(&analysis),
         responses(&analysis),
@@ -129,6 +131,18 @@ fn failed(analysis: &Analysis) -> Option<Section> {
         }
     };
     Section::new("failed", "Runs without results", html)
+}
+
+fn hazard_maps(dir: &Path, analysis: &Analysis) -> Option<Section> {
+    if analysis.hazard.is_empty() {
+        return None;
+    }
+    let maps = analysis.hazard.iter().filter_map(|maps| {
+        let bytes = std::fs::read(dir.join(hazard::FOLDER).join(format!("{}.png", maps.files))).ok()?;
+        Some(picture("png", &bytes, &format!("{}: probability of reach, dark red 1", maps.case)))
+    });
+    let note = paragraph(&format!("{}.", hazard::note(&analysis.hazard)));
+    Section::new("hazard", "Hazard", joined([plots(maps), html_of(&hazard::table(&analysis.hazard)), note]))
 }
 
 fn targets(analysis: &Analysis) -> Option<Section> {

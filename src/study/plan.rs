@@ -3,6 +3,7 @@
 use super::axis::{Axis, MOST_RUNS, Setting, combine};
 use super::factor::Factor;
 use super::file::{Combine, StudyFile};
+use super::hazard::{self, Hazard};
 use super::label::file_names;
 use super::parameter::{self, Samples};
 use super::quantity::{self, Quantity};
@@ -58,6 +59,8 @@ pub struct Plan {
     pub tolerance: f64,
     /// Concurrent runs, if given.
     pub jobs: Option<usize>,
+    /// Hazard maps.
+    pub hazard: Option<Hazard>,
 }
 
 impl Plan {
@@ -101,6 +104,7 @@ impl Plan {
         }
         let targets = target::resolve(document, &file.target, &quantities)?;
         let jobs = file.jobs;
+        let hazard = hazard::resolve(document, file.hazard.as_ref())?;
         Ok(Plan {
             title,
             scene,
@@ -115,6 +119,7 @@ impl Plan {
             quantities,
             tolerance,
             jobs,
+            hazard,
         })
     }
 

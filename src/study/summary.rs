@@ -1,6 +1,7 @@
 //! Readable tables of responses, sensitivities and targets.
 
 use super::analysis::Analysis;
+use super::hazard;
 use super::layout::{Cell, Table, four_digits};
 use super::statistics::significant_correlation;
 
@@ -130,6 +131,10 @@ pub fn notes(analysis: &Analysis) -> Vec<String> {
 /// Formats targets, sensitivities and notes as Markdown.
 pub fn sections(analysis: &Analysis) -> String {
     let mut text = String::new();
+    if !analysis.hazard.is_empty() {
+        text += &format!("\n## Hazard\n\n{}", hazard::table(&analysis.hazard).markdown());
+        text += &format!("\n{}.\n", hazard::note(&analysis.hazard));
+    }
     if !analysis.targets.is_empty() {
         text += &format!("\n## Targets\n\n{}", targets(analysis).markdown());
         text += &format!("\n## Cases of smallest misfit\n\n{}", best(analysis, BEST).markdown());
@@ -174,6 +179,15 @@ pub fn printed(analysis: &Analysis, most: usize) -> String {
     text += &format!("\n{}", sensitivities(analysis).aligned(2));
     notes(analysis).iter().for_each(|note| text += &format!("note: {note}.\n"));
     text + &printed_best(analysis)
+}
+
+/// Formats the areas of the hazard maps for a terminal; nothing without maps.
+pub fn printed_hazard(analysis: &Analysis) -> String {
+    if analysis.hazard.is_empty() {
+        return String::new();
+    }
+    let (table, note) = (hazard::table(&analysis.hazard), hazard::note(&analysis.hazard));
+    format!("\n{}note: {note}.\n", table.aligned(1))
 }
 
 /// Formats targets and cases of smallest misfit for a terminal; nothing without targets.

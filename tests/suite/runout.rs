@@ -217,3 +217,139 @@ fn stiffnesses_spread() {
     assert!((alike / spread - 1.0456).abs() < 0.05, "{alike} {spread}");
     assert!((alike / spread - 1.0).abs() > 5e-3);
 }
+
+/// Energies of passed cells stay below the energy of the fall; results survive interruption.
+#[test]
+fn passed_cells_hold_the_energy_of_the_fall() {
+    let scene = repository().join("inputs/geo/dam.toml");
+    let set = ["time.end=8", "output.frames=1", "grains.0.count=4"];
+    let folder = Folder::new("passage");
+    run(&scene, &folder.join("out"), &set).good();
+    let (table, summary) =
+        (Table::read(&folder.join("out/passage.csv")), json(&folder.join("out/summary.json")));
+    let [x, y, ground, energy] = ["x", "y", "ground", "energy"].map(|name| table.column(name));
+    let mass = summary["runout"]["mass"].as_f64().unwrap();
+    assert!(x.len() > 10 && table.column("entries").iter().any(|n| *n >= 2.0), "{} cells", x.len());
+    for k in 0..x.len() {
+        // Terrain: a slope of 32 degrees with bumps of a few metres; stones begin 20 m above it.
+        let most = mass * 9.81 * (458.0 - ground[k]) + 0.5 * mass * 9.0;
+        assert!(energy[k] <= most, "{} J at {}, {}; the fall of all has {most} J", energy[k], x[k], y[k]);
+        assert!((x[k] / 20.0 - 0.5).fract() == 0.0 && (ground[k] - 0.6249 * (1000.0 - x[k])).abs() < 40.0);
+    }
+    let fastest = energy.iter().copied().fold(0.0, f64::max);
+    assert!(fastest > 0.01 * mass * 9.81 * 100.0, "{fastest} J");
+    super::checkpoint::broken(&scene, &set, &[0.3, 0.7], &["passage.csv"]);
+}
+
+/// Maps of three releases against their own tables.
+#[test]
+fn hazard_maps_count_releases() {
+    let folder = Folder::new("hazard");
+    let scene = repository().join("inputs/geo/dam.toml");
+    let study = format!(
+        "scene = {:?}\n[base]\nset = [\"time.end=6\", \"output.vtk=false\", \"grains.0.count=3\"]\n[seeds]\nvalues = [1, 2, 3]\n\
+         [[quantity]]\nsummary = \"runout.farthest\"\n[hazard]\nquantile = 0.6\nenergies = [1e5]\n",
+        scene.display().to_string()
+    );
+    let file = folder.write("study.toml", &study);
+    let out = folder.join("out");
+    let arguments =
+        ["study", &file.display().to_string(), "--out", &out.display().to_string(), "--threads", "1"];
+    let said = trackbed(arguments).good().stdout;
+    assert!(said.contains("60 % energy [kJ]") && said.contains("95 % confidence"), "{said}");
+    let grid = |name: &str| {
+        let entry = fs::read_dir(out.join("maps")).unwrap().map(|e| e.unwrap().path());
+        let file =
+            entry.into_iter().find(|f| f.display().to_string().ends_with(&format!("_{name}.asc"))).unwrap();
+        let text = fs::read_to_string(file).unwrap();
+        let head: Vec<f64> =
+            text.lines().take(6).map(|l| l.split_whitespace().nth(1).unwrap().parse().unwrap()).collect();
+        let rows: Vec<Vec<f64>> =
+            text.lines().skip(6).map(|l| l.split(' ').map(|v| v.parse().unwrap()).collect()).collect();
+        assert_eq!([rows[0].len() as f64, rows.len() as f64], [head[0], head[1]]);
+        move |x: f64, y: f64| {
+            let (i, j) = ((x - head[2]) / head[4], (y - head[3]) / head[4]);
+            rows[rows.len() - 1 - j as usize][i as usize]
+        }
+    };
+    let runs: Vec<Table> = fs::read_dir(out.join("runs"))
+        .unwrap()
+        .map(|e| e.unwrap().path().join("passage.csv"))
+        .filter(|f| f.exists())
+        .map(|f| Table::read(&f))
+        .collect();
+    assert_eq!(runs.len(), 3);
+    let (reach, energy, above) = (grid("reach"), grid("energy"), grid("above_100kJ"));
+    let of = |run: &Table, x: f64, y: f64| {
+        let (xs, ys) = (run.column("x"), run.column("y"));
+        (0..xs.len()).find(|k| xs[*k] == x && ys[*k] == y).map(|k| run.column("energy")[k])
+    };
+    for (x, y) in runs.iter().flat_map(|run| run.column("x").into_iter().zip(run.column("y"))) {
+        let mut energies: Vec<f64> = runs.iter().map(|run| of(run, x, y).unwrap_or(-1.0)).collect();
+        energies.sort_by(f64::total_cmp);
+        let share = |least: f64| energies.iter().filter(|e| **e > least).count() as f64 / 3.0;
+        assert!((reach(x, y) - share(-0.5)).abs() < 1e-12 && (above(x, y) - share(1e5)).abs() < 1e-12);
+        // The second of three is not exceeded in 60 % of the runs.
+        assert_eq!(energy(x, y), energies[1].max(0.0));
+    }
+    for (key, line) in [
+        ("energies = [1e5]", "energies = [2, 1]"),
+        ("quantile = 0.6", "quantile = 0.2"),
+        ("[hazard]", "[hazard]\nnonsense = 1"),
+    ] {
+        let file = folder.write("wrong.toml", &study.replace(key, line));
+        let said = trackbed([
+            "study",
+            &file.display().to_string(),
+            "--out",
+            &folder.join("w").display().to_string(),
+        ]);
+        assert!(said.code == 2 && said.stderr.contains("hazard"), "{}", said.stderr);
+    }
+}
+
+/// Largest sag of a chain of strands under a load that is let go in its middle: W f = k (√(l² + f²) − l)² for halves of
+/// length l and stiffness k.
+#[test]
+fn strands_stretch_as_a_cable() {
+    let folder = Folder::new("strands");
+    let nodes: Vec<String> =
+        (1..20).filter(|k| *k != 10).map(|k| format!("[{}, 0, 0, 0.01]", 0.1 * f64::from(k))).collect();
+    let number = |k: usize| match k {
+        0 => 19,
+        10 => 18,
+        20 => 20,
+        k if k < 10 => k - 1,
+        k => k - 2,
+    };
+    let pairs: Vec<String> = (0..20).map(|k| format!("{},{}", number(k), number(k + 1))).collect();
+    folder.write("pairs.csv", &format!("a,b\n{}\n", pairs.join("\n")));
+    let scene = folder.write(
+        "scene.toml",
+        &format!(
+            "title = \"chain\"\n[[material]]\nname = \"strand\"\ndensity = 1000\nstiffness = \"1 MN/m\"\nfriction = 0.3\nrestitution = 0.5\n\
+             [[material]]\nname = \"load\"\ndensity = 2e6\nstiffness = \"1 MN/m\"\nfriction = 0.3\nrestitution = 0.5\n\
+             [[grains]]\nname = \"nodes\"\nshape = \"sphere\"\nmaterial = \"strand\"\nspheres = [{}]\n\
+             [[grains]]\nname = \"load\"\nshape = \"sphere\"\nmaterial = \"load\"\nspheres = [[1, 0, 0, 0.01]]\n\
+             [[grains]]\nname = \"ends\"\nshape = \"sphere\"\nmaterial = \"strand\"\nprescribed_velocity = [0, 0, 0]\n\
+             spheres = [[0, 0, 0, 0.01], [2, 0, 0, 0.01]]\n\
+             [[bond]]\nname = \"strand\"\npairs = \"pairs.csv\"\ndamping = 0.0\n\
+             contact_point = {{ normal_stiffness = \"200 kN/m\", shear_stiffness = 0.0 }}\n\
+             [[probe]]\nname = \"load\"\ngrain = 18\n[time]\nend = \"0.6 s\"\n[output]\nframes = 0\nvtk = false\n",
+            nodes.join(", ")
+        ),
+    );
+    run(&scene, &folder.join("out"), &[]).good();
+    let history = Table::read(&folder.join("out/history.csv"));
+    let z = history.column("load_x_z");
+    let sag = z.iter().fold(0.0, |most: f64, z| most.max(-z));
+    // Ten strands of 0.1 m on each side.
+    let (stiffness, weight) = (200e3 / 10.0, 9.81 * 2e6 * 4.0 / 3.0 * PI * 1e-6);
+    let stored = |f: f64| stiffness * ((1.0 + f * f).sqrt() - 1.0).powi(2);
+    let (mut low, mut high) = (0.01, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if stored(middle) < weight * middle { low = middle } else { high = middle }
+    }
+    assert!((sag / low - 1.0).abs() < 0.01, "{sag} m, closed form {low} m");
+}

@@ -63,15 +63,14 @@ pub fn write_vti(file: &Path, map: &DepthMap<'_>) -> Result<(), WriteError> {
     vtk::write_with(file, ("ImageData", &image), &[("Extent", extent)], &[fields.finish()])
 }
 
-/// Writes a picture, north up: shaded ground, coloured depth.
+/// Writes a picture, north up: shaded ground, depth coloured up to `most` [m].
 ///
 /// # Errors
 /// I/O errors.
-pub fn write_png(file: &Path, map: &DepthMap<'_>) -> Result<(), WriteError> {
+pub fn write_png(file: &Path, map: &DepthMap<'_>, most: f64) -> Result<(), WriteError> {
     let [nx, ny] = map.counts;
     let scale = PIXELS.div_ceil(nx.min(ny).max(1)).clamp(1, LARGEST);
     let (width, height) = (nx * scale, ny * scale);
-    let deepest = map.depth.iter().copied().fold(0.0, f64::max).max(f64::MIN_POSITIVE);
     let mut pixels = Vec::with_capacity(3 * width * height);
     for row in 0..height {
         let j = ny - 1 - row / scale;
@@ -79,7 +78,7 @@ pub fn write_png(file: &Path, map: &DepthMap<'_>) -> Result<(), WriteError> {
             let i = column / scale;
             let k = j * nx + i;
             let light = shade(map, i, j);
-            let colour = if map.inside[k] { ramp(map.depth[k] / deepest) } else { [190.0; 3] };
+            let colour = if map.inside[k] { ramp(map.depth[k] / most) } else { [190.0; 3] };
             pixels.extend(colour.map(|c| (c * light).clamp(0.0, 255.0) as u8));
         }
     }
@@ -139,7 +138,7 @@ mod tests {
         {
             assert!(text.contains(part), "{part}");
         }
-        write_png(&dir.join("a.png"), &map).unwrap();
+        write_png(&dir.join("a.png"), &map, 2.0).unwrap();
         let decoder =
             png::Decoder::new(std::io::BufReader::new(std::fs::File::open(dir.join("a.png")).unwrap()));
         let mut reader = decoder.read_info().unwrap();

@@ -4,6 +4,7 @@
 
 mod abaqus;
 pub mod ansys_lists;
+pub mod asc;
 pub mod atomic;
 mod body_fields;
 mod cdb;

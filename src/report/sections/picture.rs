@@ -1,9 +1,8 @@
 //! Pictures of the last frames.
 
 use crate::data::{RunData, State};
-use crate::page::{Section, joined, paragraph, plots};
-use base64::prelude::{BASE64_STANDARD, Engine};
-use maud::{Markup, PreEscaped, html};
+use crate::page::{self, Section, joined, paragraph, plots};
+use maud::Markup;
 use trackbed_post::render;
 
 /// Most pictures of a page.
@@ -24,22 +23,9 @@ pub fn picture(runs: &[RunData]) -> Option<Section> {
             Err(_) if !run.dir.join("frames").is_dir() => return None,
             Err(_) => return Some(paragraph(&format!("{}: the last frame cannot be read.", run.label))),
         };
-        Some(figure(&bytes, &if alone { remark } else { format!("{}: {remark}", run.label) }))
+        Some(page::picture("jpeg", &bytes, &if alone { remark } else { format!("{}: {remark}", run.label) }))
     });
     let figures: Vec<Markup> = drawn.collect();
     let html = if alone { joined(figures) } else { plots(figures) };
     Section::new("picture", "Last frame", html)
-}
-
-fn figure(bytes: &[u8], caption: &str) -> Markup {
-    // Base64 needs no escaping; XML closes the element.
-    let image =
-        format!("<img alt=\"Last frame\" src=\"data:image/jpeg;base64,{}\"/>", BASE64_STANDARD.encode(bytes));
-    html! {
-        figure class="picture" {
-            figcaption { (caption) } "\n"
-            (PreEscaped(image)) "\n"
-        }
-        "\n"
-    }
 }

@@ -12,6 +12,7 @@ use super::flow::Flow;
 use super::folder;
 use super::frames::{self, Shown};
 use super::recorder::Now;
+use super::runout::Passage;
 use super::specimen::{self, SpecimenRecord};
 use super::structures;
 use super::summary::LoadRecord;
@@ -64,6 +65,7 @@ struct Course {
     largest_kinetic: f64,
     #[serde(default)]
     cycle_stresses: CycleStresses,
+    passage: Option<Passage>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -191,6 +193,12 @@ impl<'a> Results<'a> {
         if let Some((plan, view)) = plan.zip(system.grains()) {
             course.specimen.push(specimen::point(plan, view, time));
         }
+        let plan = self.job.grains.as_ref().and_then(|g| g.runout.as_ref()).filter(|plan| plan.passage);
+        if let Some((plan, view)) = plan.zip(system.grains())
+            && let Some(cell) = plan.cell
+        {
+            course.passage.get_or_insert_default().follow(view, plan, cell);
+        }
         let now = Now { time, system, job: self.job, track, flow, balance: &course.balance };
         let values = columns::values(&now);
         self.history.row(&values)?;
@@ -299,6 +307,11 @@ impl<'a> Results<'a> {
         frames::write(&mut self.writers, (self.course.frame, time), solid, grains)?;
         self.course.frame += 1;
         Ok(())
+    }
+
+    /// Cells that grains passed.
+    pub fn passage(&self) -> Option<&Passage> {
+        self.course.passage.as_ref()
     }
 
     /// Closes the frame files.

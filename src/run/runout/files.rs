@@ -68,7 +68,8 @@ pub fn write(
         inside: &map.inside,
     };
     depth_map::write_vti(&dir.join("runout.vti"), &drawn)?;
-    depth_map::write_png(&dir.join("runout.png"), &drawn)?;
+    let deepest = map.depth.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    depth_map::write_png(&dir.join("runout.png"), &drawn, deepest)?;
     let corners = map.outlines().into_iter().enumerate();
     let corners: Vec<Corner> = corners.flat_map(|(k, line)| line.into_iter().map(move |x| (k, x))).collect();
     write_table(&dir.join("outline.csv"), &OUTLINE, &corners)?;

@@ -9,8 +9,10 @@
 mod deposit;
 mod files;
 mod ground;
+mod passage;
 mod records;
 
+pub use passage::Passage;
 pub use records::RunoutRecord;
 
 use super::recorder::{Now, Recorder};
@@ -94,7 +96,12 @@ impl<S: System> Recorder<S> for Slides {
 ///
 /// # Errors
 /// I/O errors.
-pub fn record(dir: &Path, view: GrainsView<'_>, part: &GrainsPart) -> Result<Option<RunoutRecord>, Failure> {
+pub fn record(
+    dir: &Path,
+    view: GrainsView<'_>,
+    part: &GrainsPart,
+    passage: Option<&Passage>,
+) -> Result<Option<RunoutRecord>, Failure> {
     let Some(plan) = &part.runout else { return Ok(None) };
     let GrainsView { model, state } = view;
     let bodies = slide(view, plan);
@@ -105,6 +112,9 @@ pub fn record(dir: &Path, view: GrainsView<'_>, part: &GrainsPart) -> Result<Opt
     let travel: Vec<f64> = from.iter().enumerate().map(|(b, x)| (state.position(b) - x).norm()).collect();
     let map = deposit::measure(view, part, plan, &bodies, &travel);
     let fragments = records::fragments(view, &bodies);
+    if let Some(passage) = passage {
+        passage.write(dir, view, part, &map)?;
+    }
     files::write(dir, view, &map, &fragments, (&bodies, &from))?;
     let (start, end) = (|b: usize| from[b], |b: usize| state.position(b));
     let head = bodies.iter().copied().max_by(|a, b| from[*a].z.total_cmp(&from[*b].z)).expect("some body");

@@ -7,7 +7,6 @@ use super::{statics, time_loop};
 use crate::context::Run;
 use crate::from::END;
 use crate::packing;
-use crate::runout;
 use crate::summary::NewtonRecord;
 use crate::system::{GrainsSystem, System};
 use crate::validity::{grains_below_walls, load_near_mode, lost_bodies, small_strain};
@@ -95,7 +94,6 @@ fn grains_alone(run: &Run<'_>, state: &mut RunState<'_>) -> Result<(), Failure> 
     state.summary.validity.extend(system.grains().into_iter().flat_map(|v| packing::checks(v, &grains.part)));
     if let Some(view) = system.grains() {
         state.summary.validity.extend(grains_below_walls(view, &grains.part));
-        state.summary.bed.runout = runout::record(run.dir, view, &grains.part)?;
     }
     Ok(())
 }

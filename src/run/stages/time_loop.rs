@@ -11,6 +11,7 @@ use crate::flow::Flow;
 use crate::from::{self, END};
 use crate::packing::StageEnergy;
 use crate::record::Results;
+use crate::runout;
 use crate::summary::{
     BedStiffness, BondSummary, EnergyRecord, MomentumRecord, PlasticRecord, SettlementRecord, StageRecord,
     Summary,
@@ -364,6 +365,9 @@ impl<'a> TimeLoop<'a> {
             [balance.start.contact_springs, balance.reference_energy().max(balance.negligible_energy())],
         ));
         summary.bed.specimen = self.recorder.specimen(system)?;
+        if let (Some(part), Some(view), false) = (part, system.grains(), failed) {
+            summary.bed.runout = runout::record(dir, view, part, self.recorder.passage())?;
+        }
         summary.solid.plastic = system.solid().and_then(PlasticRecord::of);
         self.recorder.end()?;
         self.recorder.plot_settlement()

@@ -17,6 +17,8 @@ pub struct RunoutPlan {
     pub direction: [f64; 2],
     /// Cell size [m]; default twice the mean diameter.
     pub cell: Option<f64>,
+    /// Whether passed cells are recorded; with `cell`.
+    pub passage: bool,
     /// Depth limit [m]; default half the mean diameter.
     pub depth: Option<f64>,
     /// Mass fraction behind the front.
@@ -52,10 +54,14 @@ pub(super) fn build(scene: &Table<Scene>, groups: &GroupsPart) -> Result<Option<
         return Err(table.error("groups", "none", "at least one group that can slide"));
     }
     let cell = table.check("cell", table.cell, |l| l > 0.0, "a length above 0")?.map(|l| l.si);
+    if table.passage && cell.is_none() {
+        return Err(table.missing("cell", "the side of the cells of `passage`"));
+    }
     let depth = table.check("depth", table.depth, |l| l > 0.0, "a length above 0")?.map(|l| l.si);
     let share = table.share.unwrap_or(SHARE);
     table.check("share", share, |s| (0.5..=1.0).contains(&s), "0.5 to 1")?;
-    Ok(Some(RunoutPlan { parts, direction: [x / length, y / length], cell, depth, share }))
+    let (direction, passage) = ([x / length, y / length], table.passage);
+    Ok(Some(RunoutPlan { parts, direction, cell, passage, depth, share }))
 }
 
 impl RunoutPlan {
