@@ -2,6 +2,7 @@
 
 use super::block_work::{BlockWork, Candidates};
 use super::clump_bounds::ClumpBounds;
+use super::images::Repeated;
 use super::model::Model;
 use super::state::State;
 use super::work::Work;
@@ -58,8 +59,18 @@ pub(crate) fn search<S: Surface>(model: &Model, state: &State, work: &mut Work, 
         c.planes.shrink_to_fit();
         let own = all.of_block(b);
         let free = |i: u32| state.blocks[b].velocity[all.members[b].body(i) as usize][3] > 0.0;
-        patches::candidates(&walls, own, model.skin, free, &mut c.row, &mut c.walls);
-        patches::candidates(surface, own, model.skin, free, &mut c.row, &mut c.surface);
+        match &model.images {
+            None => {
+                patches::candidates(&walls, own, model.skin, free, &mut c.row, &mut c.walls);
+                patches::candidates(surface, own, model.skin, free, &mut c.row, &mut c.surface);
+            }
+            Some(images) => {
+                let walls = Repeated { surface: &walls, images };
+                patches::candidates(&walls, own, model.skin, free, &mut c.row, &mut c.walls);
+                let surface = Repeated { surface, images };
+                patches::candidates(&surface, own, model.skin, free, &mut c.row, &mut c.surface);
+            }
+        }
     };
     if *parallel {
         works.par_iter_mut().enumerate().for_each(one);

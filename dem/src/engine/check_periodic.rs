@@ -3,9 +3,27 @@
 use super::input::ModelInput;
 use crate::base::Vec3;
 use crate::base::error::ModelError;
-use crate::bodies::table::{Bodies, BodyKind};
+use crate::bodies::table::{Bodies, Body, BodyKind};
 use crate::body_force::BodyForce;
 use crate::spatial::patchwork::Patch;
+
+/// Half the length of a body along an axis [m]: of boxes that keep their direction their own, else the radius.
+fn reach(input: &ModelInput, k: usize, body: &Body, axis: usize) -> f64 {
+    let shape = &input.shapes[body.shape];
+    // Rotation about the axis itself keeps it for a box along the axes.
+    let kept = (0..3).filter(|d| *d != axis).all(|d| body.fixed >> (3 + d) & 1 == 1);
+    let turned = input.bodies[k].orientation.to_rotation_matrix();
+    let straight = turned.matrix()[(axis, axis)].abs() > 1.0 - 1e-12;
+    if body.kind == BodyKind::Solid
+        && !shape.dilated()
+        && kept
+        && straight
+        && input.bodies[k].spin.norm() == 0.0
+    {
+        return shape.bounding_half(body.scale)[axis];
+    }
+    body.radius
+}
 
 /// Includes boxes too short for unique periodic images.
 pub(crate) fn check(
@@ -18,21 +36,34 @@ pub(crate) fn check(
     if input.periodic.iter().all(Option::is_none) {
         return Ok(());
     }
-    let walls = !(input.triangles.is_empty() && input.walls.is_empty());
-    let spheres = walls && bodies.iter().any(|b| b.kind != BodyKind::Solid);
+    let dilated = bodies.iter().any(|b| b.kind == BodyKind::Solid && input.shapes[b.shape].dilated());
     for (what, there) in [
-        ("spheres with walls other than planes", spheres),
-        ("an external surface", input.surface_material.is_some()),
+        ("polyhedra or disks on an external surface", dilated && input.surface_material.is_some()),
         ("bonds", !input.bonds.is_empty()),
     ] {
         if there {
             return error(format!("{what} cannot be combined with them"));
         }
     }
+    if bodies.iter().any(|b| b.kind != BodyKind::Solid) {
+        for (k, wall) in input.all_walls().enumerate() {
+            let along = |d: usize| {
+                let servo = wall.servo.as_ref().map_or(0.0, |servo| servo.direction[d]);
+                wall.motion.velocity[d] != 0.0 || servo != 0.0 || wall.body.is_some()
+            };
+            if let Some(d) = (0..3).find(|&d| input.periodic[d].is_some() && along(d)) {
+                let axis = ["x", "y", "z"][d];
+                return error(format!(
+                    "wall {k} moves along {axis}, which is periodic; with spheres or clumps walls stay where they are along periodic axes"
+                ));
+            }
+        }
+    }
     let largest = bodies.iter().map(|b| b.radius).fold(0.0, f64::max);
-    let least = 3.0 * (2.0 * largest + skin);
-    for (axis, side) in ["x", "y", "z"].iter().zip(&input.periodic) {
+    for (d, (axis, side)) in ["x", "y", "z"].iter().zip(&input.periodic).enumerate() {
         let Some([low, high]) = *side else { continue };
+        let reach = bodies.iter().enumerate().map(|(k, b)| reach(input, k, &b, d)).fold(0.0, f64::max);
+        let least = 3.0 * (2.0 * reach + skin);
         let length = high - low;
         if !(low.is_finite() && high.is_finite() && length > 0.0) {
             return error(format!(

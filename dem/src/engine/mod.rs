@@ -11,6 +11,7 @@ mod check_periodic;
 mod clump_bounds;
 pub(crate) mod collision;
 pub(crate) mod cpu_part;
+pub(crate) mod images;
 mod initial_contacts;
 pub mod input;
 pub mod model;

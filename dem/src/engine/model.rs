@@ -2,6 +2,7 @@
 
 use super::check;
 use super::collision;
+use super::images::Images;
 use super::input::ModelInput;
 use super::steps::Steps;
 use super::timestep::{self, DtLimit};
@@ -60,6 +61,8 @@ pub struct Model {
     /// For bodies with faces.
     pub(crate) sheet: Sheet,
     pub(crate) periodic: Option<Periodic>,
+    /// Images of patches; none without periodic axes.
+    pub(crate) images: Option<Images>,
     steps: Steps,
     limit: DtLimit,
     names: Names,
@@ -123,6 +126,7 @@ impl Model {
         check::shells(&walls, &shells, &laws)?;
         super::check_periodic::check(&input, &bodies, &patches, skin)?;
         let periodic = Periodic::new(&input.periodic);
+        let images = periodic.as_ref().map(Images::new);
         let bonds = crate::bond::resolve(&input.bond_kinds, &input.bonds, &input.bodies, &bodies)?;
         check::absent_bonds(&input)?;
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
@@ -173,6 +177,7 @@ impl Model {
             patches,
             sheet: Sheet::new(input.surface_mesh.as_deref().filter(|_| faces)),
             periodic,
+            images,
             bonds,
             radii,
             steps,

@@ -2,6 +2,7 @@
 
 use super::block_work::Candidates;
 use super::broad_phase::{self, Listed};
+use super::images::Repeated;
 use super::model::Model;
 use super::state::{BlockLists, State};
 use super::walls;
@@ -167,8 +168,19 @@ fn make<S: Surface>(model: &Model, state: &mut State, work: &mut Work, surface: 
         merging.two.merge(plane_pairs, c.planes.iter().copied(), close);
         pool.give_back(merging);
         let reach = (near, approach);
-        patches::refresh(&walls, own, reach, &c.walls, &mut c.patches, &mut wall_pairs.pairs);
-        patches::refresh(surface, own, reach, &c.surface, &mut c.patches, &mut surface_pairs.pairs);
+        let (wall_pairs, surface_pairs) = (&mut wall_pairs.pairs, &mut surface_pairs.pairs);
+        match &model.images {
+            None => {
+                patches::refresh(&walls, own, reach, &c.walls, &mut c.patches, wall_pairs);
+                patches::refresh(surface, own, reach, &c.surface, &mut c.patches, surface_pairs);
+            }
+            Some(images) => {
+                let walls = Repeated { surface: &walls, images };
+                patches::refresh(&walls, own, reach, &c.walls, &mut c.patches, wall_pairs);
+                let surface = Repeated { surface, images };
+                patches::refresh(&surface, own, reach, &c.surface, &mut c.patches, surface_pairs);
+            }
+        }
     };
     if *parallel {
         let candidates = works.par_iter().map(|w| &w.candidates);

@@ -1,5 +1,6 @@
 //! Periodic wrapping of bodies (`spatial/periodic.rs`).
 
+use super::images;
 use super::model::Model;
 use super::state::State;
 use crate::base::Vec3;
@@ -29,6 +30,9 @@ pub(crate) fn wrap(periodic: &Periodic, model: &Model, state: &mut State) {
     }
     if !moved {
         return;
+    }
+    if let Some(images) = &model.images {
+        (0..state.blocks.len()).for_each(|b| images::wrap(images, periodic, state, b, &turns[b]));
     }
     for b in 0..state.blocks.len() {
         let shift = |i: u32, block: u32, j: u32, before: &Turns| -> Turns {

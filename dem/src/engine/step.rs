@@ -3,6 +3,7 @@
 use super::block_work::BlockWork;
 use super::bonds;
 use super::broad_phase::{self, Listed};
+use super::images::Repeated;
 use super::input::AppliedForce;
 use super::model::Model;
 use super::state::State;
@@ -258,14 +259,29 @@ pub(crate) fn on_walls(
     work: &mut BlockWork,
 ) {
     work.patches.wall_sums.resize(walls.groups(), WallSum::default());
-    let against = ContactSurface {
-        surface: walls,
-        material: |patch| model.walls.material(patch),
-        partner: |patch| model.walls.partner(patch),
-        external: false,
-        travel_since_search,
-    };
-    surface_contacts::contacts(setting, &against, list, own, &mut work.totals, &mut work.patches);
+    let (material, partner, external) = (|p| model.walls.material(p), |p| model.walls.partner(p), false);
+    let BlockWork { totals, patches, .. } = work;
+    match &model.images {
+        None => {
+            let against = ContactSurface { surface: walls, material, partner, external, travel_since_search };
+            surface_contacts::contacts(setting, &against, list, own, totals, patches);
+        }
+        Some(images) => {
+            let against = ContactSurface {
+                surface: &Repeated { surface: walls, images },
+                material: |p| material(images.original(p).0),
+                partner: |p| partner(images.original(p).0),
+                external,
+                travel_since_search,
+            };
+            surface_contacts::contacts(setting, &against, list, own, totals, patches);
+            // Sums refer to the centre of the wall itself.
+            for (force, contact) in patches.forces().iter().zip(&list.live) {
+                let offset = images.original(contact.patch).1;
+                totals.balance.periodic.angular += offset.cross(&force.force()) * setting.dt;
+            }
+        }
+    }
 }
 
 /// Sphere–surface contacts of a block; `travel_since_search`: relative displacement bound since the last neighbour list [m].
@@ -277,14 +293,27 @@ pub(crate) fn on_surface<S: Surface>(
     own: (&Block, &BlockBodies),
     work: &mut BlockWork,
 ) {
-    let against = ContactSurface {
-        surface,
-        material: |patch| model.patch_material(patch) as u32,
-        partner: Partner::Patch,
-        external: true,
-        travel_since_search,
+    let (material, partner, external) = (|p| model.patch_material(p) as u32, Partner::Patch, true);
+    let BlockWork { totals, patches, .. } = &mut *work;
+    let done = match &model.images {
+        None => {
+            let against = ContactSurface { surface, material, partner, external, travel_since_search };
+            surface_contacts::contacts(setting, &against, list, own, totals, patches)
+        }
+        Some(images) => {
+            let against = ContactSurface {
+                surface: &Repeated { surface, images },
+                material: |p| material(images.original(p).0),
+                partner: |p| partner(images.original(p).0),
+                external,
+                travel_since_search,
+            };
+            let first = patches.contacts.len();
+            let done = surface_contacts::contacts(setting, &against, list, own, totals, patches);
+            images.restore(&mut patches.contacts[first..]);
+            done
+        }
     };
-    let done = surface_contacts::contacts(setting, &against, list, own, &mut work.totals, &mut work.patches);
     work.totals.balance.work_surface += done.work;
     work.totals.balance.surface += &done.impulse;
 }

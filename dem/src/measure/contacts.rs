@@ -198,12 +198,13 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
         KINDS.iter().zip(kinds).for_each(|(kind, list)| kind.visit(&model.laws, &now, b, list, &mut f));
         planes(state, &now, b, &mut f);
         for contact in &lists.walls.live {
-            let k = model.walls.wall_of(contact.patch);
+            let (number, offset) = original(model, contact.patch);
+            let k = model.walls.wall_of(number);
             let wall = &model.walls.walls[k];
             let partner = Partnership {
                 material: wall.material,
-                partner: model.walls.partner(contact.patch),
-                velocity: state.walls[k].velocity_at(&wall.centre, &contact.point),
+                partner: model.walls.partner(number),
+                velocity: state.walls[k].velocity_at(&wall.centre, &(contact.point - offset)),
                 spin: state.walls[k].spin,
                 inverse_mass: wall.body.as_ref().map_or(0.0, |b| b.inverse_mass),
             };
@@ -211,8 +212,8 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
         }
         for contact in &lists.surface.live {
             let partner = Partnership {
-                material: model.patch_material(contact.patch) as u32,
-                partner: Partner::Patch(contact.patch),
+                material: model.patch_material(original(model, contact.patch).0) as u32,
+                partner: Partner::Patch(original(model, contact.patch).0),
                 velocity: contact.velocity,
                 spin: Vec3::zeros(),
                 inverse_mass: 0.0,
@@ -220,6 +221,11 @@ pub(crate) fn visit(model: &Model, state: &State, back: f64, mut f: impl FnMut(&
             patch(&now, b, contact, &partner, &mut f);
         }
     }
+}
+
+/// Patch of a contact, and the offset of its periodic image [m].
+fn original(model: &Model, number: u32) -> (u32, Vec3) {
+    model.images.as_ref().map_or((number, Vec3::zeros()), |images| images.original(number))
 }
 
 struct Partnership {

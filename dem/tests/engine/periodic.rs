@@ -3,8 +3,8 @@
 use crate::scene::{Random, Run, clump, plane, sphere, stone, weightless};
 use nalgebra::UnitQuaternion;
 use trackbed_dem::{
-    BodyInput, Material, Model, ModelError, ModelInput, Shape, State, TimeStep, TriangleSurface, Vec3, Work,
-    measure,
+    BodyInput, Material, Model, ModelError, ModelInput, Partner, Shape, State, TimeStep, TriangleSurface,
+    Vec3, Work, measure,
 };
 
 const PITCH: f64 = 0.0225;
@@ -53,6 +53,57 @@ fn continued(input: &ModelInput, run: &Run, by: impl Fn(usize) -> Vec3) -> Model
 fn across(run: &Run) -> usize {
     let contacts = measure::contacts(&run.model, &run.state);
     contacts.iter().filter(|c| c.shift != Vec3::zeros() && c.normal_force > 0.0).count()
+}
+
+/// Floor with hills of 4 mm whose triangles repeat themselves, in place of the plane.
+fn hilly(n: usize, layers: usize, by: &Vec3) -> ModelInput {
+    const CELLS: usize = 5;
+    let mut input = bed(n, layers);
+    input.planes.clear();
+    let length = PITCH * n as f64;
+    let height = |i: usize, j: usize| 0.004 * (((i % CELLS) * 7 + (j % CELLS) * 3) % 4) as f64 / 3.0 - 0.004;
+    let at = |i: usize, j: usize| {
+        Vec3::new(i as f64 * length / CELLS as f64, j as f64 * length / CELLS as f64, height(i, j)) + by
+    };
+    let vertices = (0..=CELLS).flat_map(|j| (0..=CELLS).map(move |i| at(i, j))).collect();
+    let number = |i: usize, j: usize| (j * (CELLS + 1) + i) as u32;
+    let cells = (0..CELLS).flat_map(|j| (0..CELLS).map(move |i| (i, j)));
+    let triangles = cells.flat_map(|(i, j)| {
+        let [a, b, c, d] = [number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    let triangles = triangles.collect();
+    input.triangles.push(TriangleSurface { vertices, triangles, ..TriangleSurface::default() });
+    input
+}
+
+/// Spheres and clumps on triangles: the same motion wherever the borders lie.
+#[test]
+fn floor_is_independent_of_borders() {
+    const L: f64 = 6.0 * PITCH;
+    let mut settled = Run::new(hilly(6, 4, &Vec3::zeros()));
+    settled.steps(9_000);
+    let ways = |by: Vec3, back: bool| {
+        let mut moved = continued(&hilly(6, 4, &by), &settled, |_| by);
+        if back {
+            moved.bodies.iter_mut().for_each(|b| b.position = settled.model.wrap(&b.position));
+        }
+        moved.gravity.x = 4.0;
+        let start: Vec<Vec3> = moved.bodies.iter().map(|b| b.position).collect();
+        let mut run = Run::new(moved);
+        run.steps(1000);
+        let contacts = measure::contacts(&run.model, &run.state);
+        let on_floor = contacts.iter().filter(|c| matches!(c.b, Partner::Triangle(_))).count();
+        (start.iter().enumerate().map(|(k, x)| run.state.position(k) - x).collect::<Vec<_>>(), on_floor)
+    };
+    let (here, on_floor) = ways(Vec3::zeros(), false);
+    assert!(on_floor > 20 && here.iter().any(|w| w.norm() > 5e-4), "{on_floor} contacts");
+    for (by, back) in [(Vec3::new(0.5 * L, 0.5 * L, 0.0), true), (Vec3::new(0.3 * L, -0.2 * L, 0.0), false)] {
+        let (there, contacts) = ways(by, back);
+        let worst = here.iter().zip(&there).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        println!("{by:?}: ways differ by {worst:.1e} m, {on_floor} and {contacts} contacts on the floor");
+        assert!(worst < 1e-12 && contacts == on_floor, "{worst:e}, {contacts} of {on_floor} contacts");
+    }
 }
 
 /// Displacements over 1000 steps agree to 1e-12 m (measured 3e-15 m).
@@ -148,7 +199,13 @@ fn balances_close() {
         ..bed(5, 3)
     };
     flow.bodies.iter_mut().for_each(|b| b.velocity += Vec3::new(2.0, 0.6, 0.0));
-    for (input, free) in [(input, true), (flow, false)] {
+    let mut hills = ModelInput {
+        gravity: flow.gravity,
+        time_step: flow.time_step.clone(),
+        ..hilly(5, 3, &Vec3::zeros())
+    };
+    hills.bodies.iter_mut().for_each(|b| b.velocity += Vec3::new(2.0, 0.6, 0.0));
+    for (input, free) in [(input, true), (flow, false), (hills, false)] {
         let mut run = Run::new(input);
         let before = measure::momentum(&run.model, &run.state);
         let total = |run: &Run| {
@@ -302,6 +359,14 @@ fn what_cannot_be_periodic_is_refused() {
     has(refused(&|i| i.periodic[1] = Some([1.0, 1.0])), "y runs from 1 to 1");
     has(refused(&|i| i.periodic[2] = Some([0.0, f64::INFINITY])), "both must be finite");
     has(refused(&|i| i.planes.push(plane(Vec3::zeros(), Vec3::new(0.1, 0.0, 1.0)))), "normal of plane 0");
-    has(refused(&|i| i.triangles.push(triangle())), "spheres with walls");
-    has(refused(&|i| i.surface_material = Some(0)), "an external surface");
+    let moving = |i: &mut ModelInput, velocity: Vec3| {
+        i.triangles.push(triangle());
+        i.triangles[0].velocity = velocity;
+    };
+    has(refused(&|i| moving(i, Vec3::x())), "wall 0 moves along x");
+    let mut across = weightless(stone());
+    across.bodies.push(sphere(Vec3::repeat(0.05), Vec3::zeros()));
+    across.periodic[0] = Some([0.0, 0.1]);
+    moving(&mut across, Vec3::y());
+    assert!(Model::new(across).is_ok());
 }

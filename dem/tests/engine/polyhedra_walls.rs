@@ -319,10 +319,6 @@ fn what_cannot_be_periodic_is_named() {
     let mut long = column();
     long.triangles.push(floor(1, 0.4));
     assert!(problem(long).contains("too long for a period"));
-    let mut spheres = column();
-    spheres.shapes.push(Shape::Sphere { radius: 0.01 });
-    spheres.bodies.push(body(4, Vec3::repeat(0.4)));
-    assert!(problem(spheres).contains("spheres with walls"));
     let waves = |length: f64, direction: f64| {
         let mut input = column();
         let measured = Measured::Length(length);
