@@ -5,7 +5,7 @@
 //!
 //! Source: Allen & Tildesley, Computer Simulation of Liquids (2017), sec. 1.6.2.
 //!
-//! Limits: bodies with faces at most a third of the box; planes along periodic axes; no bonds.
+//! Limits: bodies at most half as long as the box; planes along periodic axes; no bonds.
 
 use super::cells::Cells;
 use crate::base::Vec3;

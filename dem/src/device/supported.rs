@@ -27,6 +27,13 @@ pub fn check(model: &Model) -> Result<(), Unsupported> {
         (model.solids && bodies().all(solid), "scenes of boxes and polyhedra only"),
         (model.solids && !model.bonds.is_empty(), "bonds in scenes with boxes or polyhedra"),
         (model.solids && model.periodic.is_some(), "boxes and polyhedra across periodic boundaries"),
+        (
+            model.periodic.is_some()
+                && !(model.walls.walls.is_empty()
+                    && model.bonds.is_empty()
+                    && model.surface_material.is_none()),
+            "walls, solids and bonds with periodic boundaries",
+        ),
         (model.scarred, "scarring of walls"),
         (!model.body_forces.is_empty(), "body forces other than gravity"),
     ];

@@ -5,7 +5,22 @@ use crate::base::Vec3;
 use crate::base::error::ModelError;
 use crate::bodies::table::{Bodies, Body, BodyKind};
 use crate::body_force::BodyForce;
+use crate::measure::components;
 use crate::spatial::patchwork::Patch;
+
+/// Whether bodies that bonds join extend over a whole period.
+fn long_piece(input: &ModelInput, bodies: &Bodies) -> bool {
+    let of = components(bodies.len(), input.bonds.iter().map(|b| [b.a as u32, b.b as u32]));
+    let mut bounds = vec![[Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)]; of.len()];
+    for (body, (piece, of)) in input.bodies.iter().zip(of.iter().zip(bodies.iter())) {
+        let [low, high] = &mut bounds[*piece as usize];
+        let reach = Vec3::repeat(of.radius);
+        (*low, *high) = (low.inf(&(body.position - reach)), high.sup(&(body.position + reach)));
+    }
+    bounds.iter().any(|[low, high]| {
+        (0..3).any(|d| input.periodic[d].is_some_and(|[from, to]| high[d] - low[d] > to - from))
+    })
+}
 
 /// Half the length of a body along an axis [m]: of boxes that keep their direction their own, else the radius.
 fn reach(input: &ModelInput, k: usize, body: &Body, axis: usize) -> f64 {
@@ -39,7 +54,10 @@ pub(crate) fn check(
     let dilated = bodies.iter().any(|b| b.kind == BodyKind::Solid && input.shapes[b.shape].dilated());
     for (what, there) in [
         ("polyhedra or disks on an external surface", dilated && input.surface_material.is_some()),
-        ("bonds", !input.bonds.is_empty()),
+        (
+            "bonds that join a piece longer than a period",
+            !input.bonds.is_empty() && long_piece(input, bodies),
+        ),
     ] {
         if there {
             return error(format!("{what} cannot be combined with them"));
@@ -63,7 +81,8 @@ pub(crate) fn check(
     for (d, (axis, side)) in ["x", "y", "z"].iter().zip(&input.periodic).enumerate() {
         let Some([low, high]) = *side else { continue };
         let reach = bodies.iter().enumerate().map(|(k, b)| reach(input, k, &b, d)).fold(0.0, f64::max);
-        let least = 3.0 * (2.0 * reach + skin);
+        // The second nearest image of a partner is out of reach.
+        let least = 2.0 * (2.0 * reach + skin);
         let length = high - low;
         if !(low.is_finite() && high.is_finite() && length > 0.0) {
             return error(format!(
@@ -72,8 +91,7 @@ pub(crate) fn check(
         }
         if length < least * (1.0 - 1e-9) {
             return error(format!(
-                "{axis} is {length} m long; at least {least:.3e} m (three diameters of the largest body and three times the \
-                 search skin) are needed"
+                "{axis} is {length} m long; at least {least:.3e} m (two diameters of the largest body and twice the search skin) are needed"
             ));
         }
     }

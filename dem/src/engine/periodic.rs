@@ -5,16 +5,19 @@ use super::model::Model;
 use super::state::State;
 use crate::base::Vec3;
 use crate::lanes::vec4::{set_xyz, xyz};
+use crate::measure::components;
 use crate::pairs::cross::{ImageName, ImagePair};
 use crate::spatial::periodic::{NONE, Periodic, Turns};
 
 pub(crate) fn wrap(periodic: &Periodic, model: &Model, state: &mut State) {
     let mut moved = false;
     let mut turns: Vec<Vec<Turns>> = Vec::with_capacity(state.blocks.len());
+    let bonded = of_pieces(periodic, model, state);
     for block in &mut state.blocks {
         let mut own = Vec::new();
         for (k, &body) in block.bodies.iter().enumerate() {
-            let t = periodic.turns(&xyz(&block.centre[k]));
+            let alone = || periodic.turns(&xyz(&block.centre[k]));
+            let t = bonded.get(body as usize).copied().unwrap_or_else(alone);
             own.extend((0..model.member_count(body as usize)).map(|_| t));
             if t == NONE {
                 continue;
@@ -66,6 +69,27 @@ pub(crate) fn wrap(periodic: &Periodic, model: &Model, state: &mut State) {
             }
         }
     }
+}
+
+/// Box lengths of each body to the box if bonds join bodies, which move with the middle of their piece; else empty.
+fn of_pieces(periodic: &Periodic, model: &Model, state: &State) -> Vec<Turns> {
+    if model.bonds.is_empty() {
+        return Vec::new();
+    }
+    let mut pairs = Vec::new();
+    let mut join = |number: u32| pairs.push(model.bonds[number as usize].ends);
+    state.each_bond(|number, _| join(number));
+    state.each_debonded(|_, r| join(r.number));
+    let of = components(model.body_count(), pairs);
+    let mut middles = vec![(Vec3::zeros(), 0.0); of.len()];
+    for (body, piece) in of.iter().enumerate() {
+        let (sum, count) = &mut middles[*piece as usize];
+        (*sum, *count) = (*sum + state.position(body), *count + 1.0);
+    }
+    of.iter()
+        .map(|piece| middles[*piece as usize])
+        .map(|(sum, count)| periodic.turns(&(sum / count)))
+        .collect()
 }
 
 impl Model {

@@ -23,7 +23,7 @@ pub fn fragments(model: &Model, state: &State) -> Fragments {
 }
 
 /// Union–find with path halving.
-pub(super) fn components(count: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> Vec<u32> {
+pub(crate) fn components(count: usize, pairs: impl IntoIterator<Item = [u32; 2]>) -> Vec<u32> {
     let mut parent: Vec<u32> = (0..count as u32).collect();
     let root = |parent: &mut Vec<u32>, mut k: u32| {
         while parent[k as usize] != k {

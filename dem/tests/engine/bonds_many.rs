@@ -24,7 +24,7 @@ fn join(input: &mut ModelInput, gap: f64) {
 }
 
 /// Irregular, so that no two bonds break simultaneously by symmetry.
-fn falling(n: usize, kind: ParallelBond, speed: f64) -> ModelInput {
+pub fn falling(n: usize, kind: ParallelBond, speed: f64) -> ModelInput {
     let mut input = weightless(stone());
     input.materials.push(rigid(stone()));
     cube(&mut input, n, 0.0198);

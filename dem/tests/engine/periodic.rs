@@ -1,5 +1,7 @@
 //! Periodic axes: results do not depend on the borders.
 
+use crate::bonds::cement;
+use crate::bonds_many::falling;
 use crate::scene::{Random, Run, clump, plane, sphere, stone, weightless};
 use nalgebra::UnitQuaternion;
 use trackbed_dem::{
@@ -109,13 +111,23 @@ fn floor_is_independent_of_borders() {
 /// Displacements over 1000 steps agree to 1e-12 m (measured 3e-15 m).
 #[test]
 fn bed_is_independent_of_borders() {
-    const L: f64 = 6.0 * PITCH;
-    let input = bed(6, 4);
+    moved_bed(6, 4);
+}
+
+/// Box of 2.2 diameters of the largest body.
+#[test]
+fn narrow_bed_is_independent_of_borders() {
+    moved_bed(3, 8);
+}
+
+fn moved_bed(n: usize, layers: usize) {
+    let length = PITCH * n as f64;
+    let input = bed(n, layers);
     let mut settled = Run::new(input.clone());
     settled.steps(12_000);
     assert!(across(&settled) > 10, "{}", across(&settled));
-    let half = |_: usize| Vec3::new(0.5 * L, 0.5 * L, 0.0);
-    let laps = |k: usize| Vec3::new((k % 5) as f64 - 2.0, (k / 5 % 3) as f64 - 1.0, 0.0) * L;
+    let half = |_: usize| Vec3::new(0.5 * length, 0.5 * length, 0.0);
+    let laps = |k: usize| Vec3::new((k % 5) as f64 - 2.0, (k / 5 % 3) as f64 - 1.0, 0.0) * length;
     let ways = |by: &dyn Fn(usize) -> Vec3, back: bool| {
         let mut moved = continued(&input, &settled, by);
         if back {
@@ -336,6 +348,47 @@ fn stress_is_independent_of_borders() {
     assert!(size > 100.0 && worst < 1e-6 * size, "{worst:e} of {size}");
 }
 
+/// A bonded cube that breaks on the floor while it drifts: the same breaks and motion wherever the borders lie.
+#[test]
+fn bonded_piece_is_independent_of_borders() {
+    const L: f64 = 0.3;
+    let run_at = |by: Vec3| {
+        let mut input = falling(5, cement(), 2.0);
+        input.periodic = [Some([-0.5 * L, 0.5 * L]), Some([-0.5 * L, 0.5 * L]), None];
+        for b in &mut input.bodies {
+            b.position += by;
+            b.velocity += Vec3::new(1.0, 0.4, 0.0);
+        }
+        let start: Vec<Vec3> = input.bodies.iter().map(|b| b.position).collect();
+        let mut run = Run::new(input);
+        run.state.steps = 4_000;
+        run.steps(2_500);
+        let jumped = (0..start.len()).any(|k| (run.state.position(k) - start[k]).norm() > 0.5 * L);
+        let way = |k: usize| {
+            let x = run.model.wrap(&run.state.position(k)) - run.model.wrap(&start[k]);
+            x.map(|x| x - (x / L).round() * L)
+        };
+        let ways: Vec<Vec3> = (0..start.len()).map(way).collect();
+        (ways, run.state.broken_bonds(), jumped, run.state.balance.dissipated())
+    };
+    let (here, broken, jumped, spent) = run_at(Vec3::zeros());
+    assert!(broken.0 > 20 && !jumped, "{broken:?}");
+    let (there, others, jumped, other) = run_at(Vec3::new(0.5 * L, 0.46 * L, 0.0));
+    let worst = here.iter().zip(&there).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    println!("ways differ by {worst:.1e} m, {broken:?} and {others:?} broken");
+    assert!(jumped && broken == others, "{broken:?} and {others:?}");
+    assert!(worst < 1e-9 && (other / spent - 1.0).abs() < 1e-9, "{worst:e}, {spent} and {other} J");
+}
+
+/// Bonded pieces longer than the period, whose ends would meet.
+#[test]
+fn long_pieces_are_refused() {
+    let mut input = falling(5, cement(), 2.0);
+    input.periodic[0] = Some([-0.06, 0.06]);
+    let said = Model::new(input).map(|_| ()).expect_err("a refusal").to_string();
+    assert!(said.contains("a piece longer than a period"), "{said}");
+}
+
 fn triangle() -> TriangleSurface {
     let vertices = vec![Vec3::zeros(), Vec3::x(), Vec3::y()];
     TriangleSurface { vertices, triangles: vec![[0, 1, 2]], ..TriangleSurface::default() }
@@ -355,7 +408,7 @@ fn what_cannot_be_periodic_is_refused() {
         }
     };
     let has = |text: String, words: &str| assert!(text.contains(words), "{text}");
-    has(refused(&|i| i.periodic[0] = Some([0.0, 0.05])), "x is 0.05 m long; at least");
+    has(refused(&|i| i.periodic[0] = Some([0.0, 0.03])), "x is 0.03 m long; at least");
     has(refused(&|i| i.periodic[1] = Some([1.0, 1.0])), "y runs from 1 to 1");
     has(refused(&|i| i.periodic[2] = Some([0.0, f64::INFINITY])), "both must be finite");
     has(refused(&|i| i.planes.push(plane(Vec3::zeros(), Vec3::new(0.1, 0.0, 1.0)))), "normal of plane 0");

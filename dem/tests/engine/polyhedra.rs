@@ -469,7 +469,7 @@ fn refusals() {
     let surface = |i: &mut ModelInput| i.surface_material = Some(0);
     assert!(refused(&surface).contains("an external surface"));
     let narrow = |i: &mut ModelInput| i.periodic[0] = Some([0.0, 0.2]);
-    assert!(refused(&narrow).contains("three diameters"));
+    assert!(refused(&narrow).contains("two diameters"));
     let absent = |i: &mut ModelInput| {
         i.shapes.push(Shape::Box { half: [0.1; 3] });
         i.bodies.push(BodyInput { absent: true, ..body(1, Vec3::x()) });

@@ -341,8 +341,7 @@ fn periodic_axes_that_cannot_be() {
         ("x = [1, 0]", "periodic.x: found [1, 0], expected two lengths, the second the larger"),
         (
             "x = [0, 0.2]",
-            "periodic: found x is 0.2 m long; at least 3.300e-1 m (three diameters of the largest body and three times the \
-             search skin) are needed, expected axes along which the scene can be periodic",
+            "periodic: found x is 0.2 m long; at least 2.200e-1 m (two diameters of the largest body and twice the search skin) are needed, expected axes along which the scene can be periodic",
         ),
         (
             "x = [0.005, 1]",
