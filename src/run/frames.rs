@@ -12,8 +12,8 @@ use trackbed_input::model::OutputPlan;
 use trackbed_input::model::grains::GrainsPart;
 use trackbed_io::failure::Failure;
 use trackbed_io::write::{
-    BODY_FIELDS, BodyField, ChainFrame, Frame, GrainFrame, NO_BODY, Part, SolidFrame, Values, WallFrame,
-    WallKind, Writers, Written,
+    BODY_FIELDS, BodyField, ChainFrame, Frame, GrainFrame, NO_BODY, Part, STONE_BODY, STONE_CENTRE,
+    SolidFrame, Values, WallFrame, WallKind, Writers, Written,
 };
 
 /// Elastic material: inside by definition.
@@ -268,7 +268,20 @@ impl<'a> BodyFields<'a> {
     fn of_polygons(&self, of: &[u32], count: usize) -> Vec<(&'static str, Values)> {
         let bodies = of.iter().copied().chain(std::iter::repeat(NO_BODY)).take(count);
         let items: Vec<Item> = bodies.map(|body| Item { body, sphere: None }).collect();
-        self.all(&items, &["radius", "orientation", "id"])
+        // `id` is the wall's; a vertex mean is no centre of mass.
+        let centre = |item: &Item| {
+            if item.body == NO_BODY {
+                return [0.0; 3];
+            }
+            let body = item.body as usize;
+            moved(self.view.state.position(body), into_box(self.view, body)).into()
+        };
+        let mut fields = vec![
+            (STONE_BODY, Values::Counts(items.iter().map(|item| item.body).collect())),
+            (STONE_CENTRE, Values::Vectors(items.iter().map(centre).collect())),
+        ];
+        fields.extend(self.all(&items, &["radius", "orientation", "id"]));
+        fields
     }
 }
 

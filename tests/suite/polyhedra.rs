@@ -222,7 +222,7 @@ fn frames_have_the_fields_of_polyhedra() {
     run(&scene, &folder.join("few"), &["output.fields=[\"spin\"]"]).good();
     let (_, _, few) = vtk(&folder.join("few/frames/walls_00001.vtp"));
     let names: Vec<_> = few.keys().map(String::as_str).collect();
-    assert_eq!(names, ["id", "kind", "part", "spin"]);
+    assert_eq!(names, ["body", "centre", "id", "kind", "part", "spin"]);
 }
 
 /// Rigid-body motion: v − v' = ω × (x − x').
