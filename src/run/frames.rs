@@ -366,7 +366,8 @@ fn walls(view: GrainsView<'_>, part: &GrainsPart) -> (WallFrame, Vec<u32>) {
         if let Some((points, polygons)) = outline {
             let (x, q) = (view.state.position(body), view.state.orientation(view.model, body));
             let scale = view.model.scale(body);
-            let points: Vec<dem::Vec3> = points.iter().map(|p| x + q * (p * scale)).collect();
+            let back = into_box(view, body);
+            let points: Vec<dem::Vec3> = points.iter().map(|p| moved(x + q * (p * scale), back)).collect();
             let polygons: Vec<&[u32]> = polygons.iter().map(Vec::as_slice).collect();
             if matches!(shape, Shape::Box { .. }) {
                 push(&mut frame, (id, WallKind::Box), &points, &polygons);
