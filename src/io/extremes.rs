@@ -173,7 +173,8 @@ fn gumbel(values: &[f64]) -> Option<[f64; 2]> {
     let variance = values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / n;
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let deviation = variance.sqrt();
-    if !(deviation > 1e-12 * mean.abs().max(deviation)) {
+    let varies = deviation.is_finite() && deviation > 1e-12 * mean.abs();
+    if !varies {
         return None;
     }
     // Shifted: no overflow. The residual rises with the scale.

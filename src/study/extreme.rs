@@ -113,7 +113,7 @@ pub fn table(rows: &[ExtremeRow]) -> Table {
         ["case", "quantity", "runs", "location", "scale", "return period [years]", "value", "interval"];
     let of = |row: &ExtremeRow| {
         let fit = row.fit.as_ref();
-        let start = vec![
+        let start = [
             Cell::text(&row.case),
             Cell::text(&row.quantity),
             Cell::Text(row.runs.to_string()),
