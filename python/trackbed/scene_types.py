@@ -1045,7 +1045,7 @@ class Hazard(TypedDict, total=False):
     # Confidence of the intervals; default 0.9; > 0, < 1.
     confidence: Float
 
-    # Time in such ice per year [s]; > 0; with `return_periods`.
+    # Time in ice per year [s]; > 0; with `return_periods`.
     exposure: Quantity
 
     # Law of the peaks; default `"weibull"`.
