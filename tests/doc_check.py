@@ -111,7 +111,7 @@ def scenes(page):
         "body": grains(spheres + "[[walls]]\n" + tetrahedron + e("`[[walls]]`", 2) + "[[walls]]\n" + plane),
         "mount": grains(spheres + '[[walls]]\nkind = "cylinder"\nmaterial = "steel"\nbase = [25, 25, -3]\nheight = 6\nradius = 2\n' + e("`[[walls]]`", 3)),
         "scarring": grains(group.replace("sphere", "polyhedron") + e("`[[grains]]`", 3) + '[[walls]]\nkind = "triangles"\nmaterial = "steel"\nvertices = [[0, 0, -3], [50, 0, -3], [0, 50, -3]]\ntriangles = [[0, 1, 2]]\n' + e("`[[walls]]`", 4)),
-        "structure": grains(spheres + '[[walls]]\nkind = "cylinder"\nname = "pile"\nmaterial = "steel"\nbase = [25, 25, -3]\nheight = 6\nradius = 2\n' + e("`[[structure]]`")),
+        "structure": grains(spheres + '[[walls]]\nkind = "cylinder"\nname = "pile"\nmaterial = "steel"\nbase = [25, 25, -3]\nheight = 6\nradius = 2\n' + e("`[[structure]]`") + e("`[[structure]]`", 1)),
         "flow": grains(e("`[[outlet]]` and `inlet`") + "[[walls]]\n" + plane),
         "bond": grains(spheres + e("`[[bond]]`") + floor + e("`[events]`")),
         "slide": grains(spheres + floor + e("`[runout]`")),

@@ -60,6 +60,7 @@ mod suite {
     mod study;
     mod summary;
     pub mod support;
+    mod tecplot_zone;
     mod track;
     mod trade;
     mod train;

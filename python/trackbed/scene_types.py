@@ -200,6 +200,12 @@ NewtonVariant = Literal["full", "modified", "initial_stiffness"]
 Order = Literal["linear", "quadratic"]
 
 
+# Law of peaks.
+# "weibull": Of the excess over the threshold.
+# "gumbel": Of the peaks.
+PeakLaw = Literal["weibull", "gumbel"]
+
+
 # Field of the solid at a node or point.
 # "displacement": Displacement.
 # "velocity": Velocity.
@@ -1049,6 +1055,43 @@ class GrowthSource(TypedDict, total=False):
     unbalanced_ratio: Float
 
 
+class Hazard(TypedDict, total=False):
+    """Statistics of the horizontal load on a structure: exceedance, peaks with a fitted law, loads of return periods, warning levels."""
+
+    # Load of the amber warning [N]; default none; > 0.
+    amber: Quantity
+
+    # Confidence of the intervals; default 0.9; > 0, < 1.
+    confidence: Float
+
+    # Time in ice per year [s]; > 0; with `return_periods`.
+    exposure: Quantity
+
+    # Law of the peaks; default `"weibull"`.
+    law: PeakLaw
+
+    # Level ice whose load is the reference; default none.
+    level_ice: LevelIce
+
+    # Ascending loads whose exceedance is recorded [N]; default none; > 0.
+    loads: Quantities
+
+    # Load of the red warning [N]; default none; > `amber`.
+    red: Quantity
+
+    # Return periods in years; default none; > 0; with `exposure`.
+    return_periods: Floats
+
+    # Shortest time below the threshold between two peaks [s]; default 0; ≥ 0.
+    separation: Quantity
+
+    # Beginning of the statistics [s]; default 0; ≥ 0.
+    start: Quantity
+
+    # Load above which peaks are fitted [N]; > 0.
+    threshold: Required[Quantity]
+
+
 class History(TypedDict, total=False):
     """A dimensionless factor as a function of time."""
 
@@ -1158,6 +1201,37 @@ class Layer(TypedDict, total=False):
 
     # Height of the top [m]; needed except in the last.
     top: Quantity
+
+
+class LevelIce(TypedDict, total=False):
+    """Level ice: crushing with `strength`, bending on a cone with `flexural_strength`."""
+
+    # Slope of the cone from the horizontal [rad]; > 0, < π/2; with `flexural_strength`.
+    angle: Quantity
+
+    # Density of the ice [kg/m³]; > 0; with `flexural_strength`.
+    density: Quantity
+
+    # Flexural strength, for bending after Ralston [Pa]; or `strength`; > 0.
+    flexural_strength: Quantity
+
+    # Friction of ice on the cone; ≥ 0; with `flexural_strength`.
+    friction: Float
+
+    # Thickness of the ridden-up ice [m]; default `thickness`; ≥ 0; with `flexural_strength`.
+    ride_up: Quantity
+
+    # Strength coefficient of crushing after ISO 19906 [Pa]; or `flexural_strength`; > 0.
+    strength: Quantity
+
+    # Ice thickness [m]; > 0.
+    thickness: Required[Quantity]
+
+    # Width at the top of the cone [m]; ≥ 0, < `width`; with `flexural_strength`.
+    top_width: Quantity
+
+    # Width at the waterline [m]; > 0.
+    width: Required[Quantity]
 
 
 class ListLayout(TypedDict, total=False):
@@ -2110,6 +2184,9 @@ class Structure(TypedDict, total=False):
 
     # Height that moments refer to [m]; default 0.
     foot: Quantity
+
+    # Statistics of the horizontal load, warning levels; default none.
+    hazard: Hazard
 
     # Ascending heights between layers [m]; default none.
     levels: Quantities

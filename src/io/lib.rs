@@ -4,8 +4,10 @@
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
 pub mod columns;
+pub mod extremes;
 pub mod failure;
 pub mod guard;
+pub mod ice_loads;
 pub mod mesh_tools;
 pub mod message;
 pub mod plot;

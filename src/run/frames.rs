@@ -12,8 +12,8 @@ use trackbed_input::model::OutputPlan;
 use trackbed_input::model::grains::{GrainsPart, MaterialsPart};
 use trackbed_io::failure::Failure;
 use trackbed_io::write::{
-    BODY_FIELDS, BodyField, ChainFrame, Frame, GrainFrame, NO_BODY, Part, SolidFrame, Values, WallFrame,
-    WallKind, Writers, Written,
+    BODY_FIELDS, BodyField, ChainFrame, Frame, GrainFrame, NO_BODY, Part, STONE_BODY, STONE_CENTRE,
+    SolidFrame, Values, WallFrame, WallKind, Writers, Written,
 };
 
 /// Elastic material: inside by definition.
@@ -272,7 +272,20 @@ impl<'a> BodyFields<'a> {
     fn of_polygons(&self, of: &[u32], count: usize) -> Vec<(&'static str, Values)> {
         let bodies = of.iter().copied().chain(std::iter::repeat(NO_BODY)).take(count);
         let items: Vec<Item> = bodies.map(|body| Item { body, sphere: None }).collect();
-        self.all(&items, &["radius", "orientation", "id"])
+        // `id` is the wall's; a vertex mean is no centre of mass.
+        let centre = |item: &Item| {
+            if item.body == NO_BODY {
+                return [0.0; 3];
+            }
+            let body = item.body as usize;
+            moved(self.view.state.position(body), into_box(self.view, body)).into()
+        };
+        let mut fields = vec![
+            (STONE_BODY, Values::Counts(items.iter().map(|item| item.body).collect())),
+            (STONE_CENTRE, Values::Vectors(items.iter().map(centre).collect())),
+        ];
+        fields.extend(self.all(&items, &["radius", "orientation", "id"]));
+        fields
     }
 }
 
@@ -357,7 +370,8 @@ fn walls(view: GrainsView<'_>, part: &GrainsPart) -> (WallFrame, Vec<u32>) {
         if let Some((points, polygons)) = outline {
             let (x, q) = (view.state.position(body), view.state.orientation(view.model, body));
             let scale = view.model.scale(body);
-            let points: Vec<dem::Vec3> = points.iter().map(|p| x + q * (p * scale)).collect();
+            let back = into_box(view, body);
+            let points: Vec<dem::Vec3> = points.iter().map(|p| moved(x + q * (p * scale), back)).collect();
             let polygons: Vec<&[u32]> = polygons.iter().map(Vec::as_slice).collect();
             if matches!(shape, Shape::Box { .. }) {
                 push(&mut frame, (id, WallKind::Box), &points, &polygons);

@@ -15,6 +15,7 @@ mod folder;
 mod frames;
 mod from;
 mod hash;
+mod hazard;
 mod initial;
 mod lock;
 mod memory;

@@ -1,12 +1,13 @@
 //! Loads and motion of structures.
 
+use super::hazard;
 use super::recorder::{Now, Recorder};
 use super::summary::LoadRecord;
 use super::system::{GrainsView, System};
 use trackbed_dem as dem;
 use trackbed_dem::Vec3;
 use trackbed_input::model::grains::StructurePlan;
-use trackbed_io::columns::history;
+use trackbed_io::columns::{Definition, history};
 use trackbed_io::write::csv::{Column, Row};
 
 /// Motion, total load, moment, loads by sector and height.
@@ -54,6 +55,37 @@ fn load(plan: &StructurePlan, GrainsView { model, state }: GrainsView<'_>, row: 
     }
 }
 
+/// Adds time and horizontal load of a history row, of structures with statistics only.
+pub fn follow_loads(
+    columns: &[Column],
+    values: &[f64],
+    plans: &[StructurePlan],
+    rows: &mut Vec<Vec<[f64; 2]>>,
+) {
+    if plans.iter().all(|plan| plan.hazard.is_none()) {
+        return;
+    }
+    rows.resize(plans.len(), Vec::new());
+    for (plan, rows) in plans.iter().zip(rows).filter(|(plan, _)| plan.hazard.is_some()) {
+        let name = history::STRUCTURE_LOAD_LEVEL.of(&plan.name).to_string();
+        let level = columns.iter().position(|c| c.name == name);
+        rows.extend(level.map(|k| [values[0], values[k]]));
+    }
+}
+
+/// Completes the records with statistics of their rows.
+pub fn with_hazards(
+    records: &[LoadRecord],
+    plans: &[StructurePlan],
+    rows: &[Vec<[f64; 2]>],
+) -> Vec<LoadRecord> {
+    let mut records = records.to_vec();
+    for ((record, plan), rows) in records.iter_mut().zip(plans).zip(rows) {
+        record.hazard = plan.hazard.as_ref().map(|plan| hazard::record(plan, rows));
+    }
+    records
+}
+
 /// Adds a history row to the records.
 pub fn follow(columns: &[Column], values: &[f64], records: &mut Vec<LoadRecord>) {
     let [load, motion] = [history::STRUCTURE_LOAD.at(0), history::STRUCTURE_MOTION.at(0)];
@@ -85,14 +117,28 @@ pub fn follow(columns: &[Column], values: &[f64], records: &mut Vec<LoadRecord>)
             let square = motion.rms_acceleration * motion.rms_acceleration;
             motion.rms_acceleration = (square + (acceleration * acceleration - square) * share).sqrt();
         }
-        let head = history::STRUCTURE_SECTOR.of(name).to_string();
-        let of = columns.iter().zip(values).filter(|(c, _)| c.name.starts_with(&head));
-        for (sector, (_, value)) in of.enumerate() {
-            if record.sectors.len() == sector {
-                record.sectors.push(0.0);
-            }
-            record.sectors[sector] = record.sectors[sector].max(*value);
+        let of = |list: &'static Definition| {
+            let head = list.of(name).to_string();
+            columns
+                .iter()
+                .zip(values)
+                .filter(move |(c, _)| c.name.starts_with(&head))
+                .map(|(_, value)| *value)
+        };
+        follow_parts(of(history::STRUCTURE_SECTOR), &mut record.sectors, &mut record.mean_sectors, share);
+        follow_parts(of(history::STRUCTURE_LAYER), &mut record.layers, &mut record.mean_layers, share);
+    }
+}
+
+/// Adds a row of loads to the largest and the mean ones, weighted by `share`.
+fn follow_parts(values: impl Iterator<Item = f64>, largest: &mut Vec<f64>, mean: &mut Vec<f64>, share: f64) {
+    for (part, value) in values.enumerate() {
+        if largest.len() == part {
+            largest.push(0.0);
+            mean.push(0.0);
         }
+        largest[part] = largest[part].max(value);
+        mean[part] += (value - mean[part]) * share;
     }
 }
 
@@ -100,6 +146,30 @@ pub fn follow(columns: &[Column], values: &[f64], records: &mut Vec<LoadRecord>)
 mod tests {
     use super::*;
     use crate::summary::MotionRecord;
+
+    #[test]
+    fn means_follow_rows() {
+        let names = [
+            "time",
+            "pile_load_x",
+            "pile_load_y",
+            "pile_load_z",
+            "pile_load_level",
+            "pile_sector0",
+            "pile_sector1",
+            "pile_layer0",
+        ];
+        let columns: Vec<Column> =
+            names.iter().map(|name| Column { name: name.to_string(), unit: "N".into() }).collect();
+        let mut records = Vec::new();
+        for row in [[0.0, 1.0, 0.0, 0.0, 1.0, 5.0, -2.0, 1.0], [0.1, 3.0, 4.0, 0.0, 5.0, 1.0, 0.0, 5.0]] {
+            follow(&columns, &row, &mut records);
+        }
+        let record = &records[0];
+        assert_eq!((record.largest, record.time, record.mean), (5.0, 0.1, [2.0, 2.0]));
+        assert_eq!((&record.sectors[..], &record.mean_sectors[..]), (&[5.0, 0.0][..], &[3.0, -1.0][..]));
+        assert_eq!((&record.layers[..], &record.mean_layers[..]), (&[5.0][..], &[3.0][..]));
+    }
 
     /// Checkpoint fields are unnamed and must be read in writing order.
     #[test]

@@ -35,6 +35,9 @@ pub struct StudyFile {
     /// Measured values of quantities.
     #[serde(default)]
     pub target: Vec<TargetTable>,
+    /// Quantities with values of return periods.
+    #[serde(default)]
+    pub extreme: Vec<ExtremeTable>,
     /// Largest error of the recommended set [-]; default 0.05.
     pub tolerance: Option<f64>,
     /// Concurrent runs; default: number of cores.
@@ -154,6 +157,20 @@ pub struct TargetTable {
     pub value: f64,
     /// Standard deviation, in the unit of the quantity.
     pub tolerance: f64,
+}
+
+/// Values of return periods from the largest value of each seed.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExtremeTable {
+    /// Name of the quantity.
+    pub quantity: String,
+    /// Number of events per year, each like a run.
+    pub events_per_year: f64,
+    /// Return periods in years.
+    pub return_periods: Vec<f64>,
+    /// Confidence of the intervals; default 0.9.
+    pub confidence: Option<f64>,
 }
 
 /// Repetitions with other seeds.

@@ -6,6 +6,7 @@ mod analysis;
 mod axis;
 mod curve;
 mod design;
+mod extreme;
 mod factor;
 mod figure;
 mod file;
@@ -290,6 +291,9 @@ fn tables(plan: &Plan, store: &Store, found: &[Found]) -> Result<Finished, Failu
     };
     let mut lines = format!("{}\n{table}", plan.title);
     lines += &summary::printed_hazard(&analysis);
+    if !outcome.extremes.is_empty() {
+        lines += &format!("\n{}", extreme::table(&outcome.extremes).aligned(2));
+    }
     for remark in text::remarks(plan, &outcome) {
         lines += &format!("warning: {remark}\n");
     }
@@ -326,7 +330,7 @@ fn write_files(plan: &Plan, store: &Store, outcome: &Outcome, analysis: &Analysi
     let page = match plan.has_reference() {
         true => text::markdown(plan, outcome) + &summary::sections(analysis),
         false => summary::markdown(&plan.title, &plan.scene.display().to_string(), analysis),
-    };
+    } + &extreme::section(&outcome.extremes);
     store::write(&dir.join("study.md"), &page)?;
     if plan.has_reference() {
         plot::pareto(plan, outcome).write(&dir.join("pareto.svg"))?;

@@ -2,11 +2,13 @@
 
 use super::axis::Setting;
 use super::curve::{self, Sample};
+use super::extreme::{Extreme, ExtremeRow};
 use super::file::Norm;
 use super::plan::{Plan, Run};
 use super::quantity::Quantity;
 use super::sample;
 use super::store::{Found, Record, Store};
+use super::table::head;
 use serde::Serialize;
 
 /// Mean cost of a set's runs.
@@ -81,6 +83,8 @@ pub struct Outcome {
     pub recommended: Option<usize>,
     /// Pareto front, cheapest first.
     pub front: Vec<usize>,
+    /// Values of return periods.
+    pub extremes: Vec<ExtremeRow>,
 }
 
 struct Gathered {
@@ -100,6 +104,7 @@ impl Outcome {
             .iter()
             .map(|g| (0..plan.quantities.len()).map(|q| cell(plan, q, g, reference)).collect())
             .collect();
+        let extremes = extremes(plan, &gathered, &units);
         let base = reference.row.cost.as_ref().and_then(|c| c.cpu_seconds);
         let mut rows: Vec<Row> = gathered.into_iter().map(|g| g.row).collect();
         for (row, cells) in rows.iter_mut().zip(cells) {
@@ -122,8 +127,16 @@ impl Outcome {
         }
         let recommended = cheapest(&rows);
         let front = front(&rows);
-        Outcome { rows, units, reference: plan.reference, recommended, front }
+        Outcome { rows, units, reference: plan.reference, recommended, front, extremes }
     }
+}
+
+fn extremes(plan: &Plan, gathered: &[Gathered], units: &[String]) -> Vec<ExtremeRow> {
+    let row = |g: &Gathered, extreme: &Extreme| {
+        let k = extreme.quantity;
+        extreme.row(&g.row.case, head(&plan.quantities[k], &units[k]), &g.samples[k])
+    };
+    gathered.iter().flat_map(|g| plan.extremes.iter().map(move |extreme| row(g, extreme))).collect()
 }
 
 /// Returns the mean CPU time [s].

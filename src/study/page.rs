@@ -1,6 +1,7 @@
 //! HTML report of a study directory, from `study.json`.
 
 use super::analysis::Analysis;
+use super::extreme::{self, ExtremeRow};
 use super::figure;
 use super::hazard;
 use super::layout::{Cell, Table};
@@ -44,6 +45,7 @@ pub fn write(options: &Options) -> Result<PathBuf, Failure> {
         hazard_maps(dir, &analysis),
         targets(&analysis),
         sensitivity(&analysis),
+        extremes(&study),
         responses(&analysis),
         cases(&analysis),
         errors(&study),
@@ -161,6 +163,13 @@ fn sensitivity(analysis: &Analysis) -> Option<Section> {
     let notes = summary::notes(analysis).into_iter().map(|note| paragraph(&format!("{note}.")));
     let table = html_of(&summary::sensitivities(analysis));
     Section::new("sensitivity", "Sensitivity", joined([plots(figures), table, joined(notes)]))
+}
+
+fn extremes(study: &Value) -> Option<Section> {
+    let rows: Vec<ExtremeRow> = serde_json::from_value(study["extremes"].clone()).ok()?;
+    let rows = Some(rows).filter(|rows| !rows.is_empty())?;
+    let note = paragraph("Gumbel law of the values of the runs; interval of the fit.");
+    Section::new("extremes", "Return periods", joined([html_of(&extreme::table(&rows)), note]))
 }
 
 fn responses(analysis: &Analysis) -> Option<Section> {

@@ -1,6 +1,7 @@
 //! Runs of a study: parameter sets times seeds.
 
 use super::axis::{Axis, MOST_RUNS, Setting, combine};
+use super::extreme::{self, Extreme};
 use super::factor::Factor;
 use super::file::{Combine, StudyFile};
 use super::hazard::{self, Hazard};
@@ -47,6 +48,8 @@ pub struct Plan {
     pub combine: Option<Combine>,
     /// Measured values.
     pub targets: Vec<Target>,
+    /// Quantities with values of return periods.
+    pub extremes: Vec<Extreme>,
     /// Parameter sets.
     pub settings: Vec<Setting>,
     /// Reference index.
@@ -103,6 +106,8 @@ impl Plan {
             }
         }
         let targets = target::resolve(document, &file.target, &quantities)?;
+        let seeds = file.seeds.as_ref().map_or(1, |seeds| seeds.values.len());
+        let extremes = extreme::resolve(document, &file.extreme, &quantities, seeds)?;
         let jobs = file.jobs;
         let hazard = hazard::resolve(document, file.hazard.as_ref())?;
         Ok(Plan {
@@ -113,6 +118,7 @@ impl Plan {
             coordinates,
             combine,
             targets,
+            extremes,
             settings,
             reference,
             runs,

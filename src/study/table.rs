@@ -189,6 +189,7 @@ pub fn json(plan: &Plan, outcome: &Outcome, analysis: &Analysis) -> String {
         "recommended": outcome.recommended.map(label),
         "front": outcome.front.iter().copied().map(label).collect::<Vec<_>>(),
         "cases": outcome.rows,
+        "extremes": outcome.extremes,
         "analysis": analysis,
     });
     format!("{value:#}\n")

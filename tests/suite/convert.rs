@@ -1,6 +1,8 @@
 //! Files of older programs: decks, round trips, invalid files.
 
+use super::scenes::vtk;
 use super::support::{Folder, Outcome, json, repository, run, trackbed_in};
+use std::f64::consts::PI;
 use std::fs;
 
 fn deck(name: &str) -> String {
@@ -186,6 +188,111 @@ frames = 1
         let expected = if c[1] == 0.0 { 2.0 * weight } else { weight };
         assert!((c[2] / expected - 1.0).abs() < 1e-3, "{chains}");
         assert!(c[1] == 0.0 || [c[0], c[1]] == [1.0, 2.0] || [c[0], c[1]] == [2.0, 1.0], "{chains}");
+    }
+}
+
+/// Polyhedron on a plane, on it a disk, on it a sphere.
+const STACK: &str = r#"[[material]]
+name = "rock"
+density = 2600
+stiffness = "1 MN/m"
+friction = 0.5
+restitution = 0.1
+[[grains]]
+name = "block"
+shape = "polyhedron"
+material = "rock"
+frustum = { from = [0.3, 0, 0], to = [0.3, 0, 0.1], radii = [0.1, 0.08], sides = 8, radius = "0.01 m" }
+[[grains]]
+name = "disk"
+shape = "disk"
+aspect = 0.4
+material = "rock"
+packing = "disk.csv"
+[[grains]]
+name = "ball"
+shape = "sphere"
+material = "rock"
+spheres = [[0.3, 0, 0.17, 0.03], [1, 0, 0.03, 0.03]]
+[[walls]]
+kind = "plane"
+material = "rock"
+point = [0, 0, 0]
+normal = [0, 0, 1]
+[time]
+end = 0.3
+[output]
+frames = 1
+"#;
+
+/// Centres of chains between grains, from the first to the second partner.
+fn ends_of(file: &std::path::Path) -> Vec<[[f64; 3]; 2]> {
+    let (points, _, cells) = vtk(file);
+    let count = cells["normal_force"].1.len();
+    let point = |k: usize| [0, 1, 2].map(|d| points[3 * k + d]);
+    let kind = &cells["kind"].1;
+    (0..count).filter(|k| kind[*k] == 0.0).map(|k| [point(2 * k), point(2 * k + 1)]).collect()
+}
+
+#[test]
+fn polyhedra_have_particles_and_chains() {
+    let folder = Folder::new("stack");
+    folder.write("scene.toml", STACK);
+    folder.write("disk.csv", "0.3, 0, 0.12, 1, 0, 0, 0, 0.1, 0\n");
+    run(&folder.join("scene.toml"), &folder.join("r"), &[]).good();
+    for output in ["a.3df", "a.dat"] {
+        convert(&folder, &["r", output]).good();
+    }
+    let block = |file: &str, head: &str| -> Vec<Vec<f64>> {
+        let text = fs::read_to_string(folder.join(file)).unwrap();
+        let rows = text.lines().skip_while(|l| !l.starts_with(&format!("{head} 0.3 "))).skip(1);
+        rows.map(|l| l.split(' ').map(|v| v.parse().unwrap()).collect()).collect()
+    };
+    let (grains, chains) = (block("a.dat", "3D:"), block("a.3df", "3DF:"));
+    // Two spheres, then block and disk: volumes of a cylinder and of a frustum of eight sides, corners cut.
+    let volume = |k: usize| 4.0 / 3.0 * PI * f64::powi(grains[k][3], 3);
+    assert_eq!(grains.len(), 4, "{grains:?}");
+    assert!((0.8..1.0).contains(&(volume(2) / (PI * 0.1 * 0.0081))), "{grains:?}");
+    assert!((0.75..1.0).contains(&(volume(3) / (PI * 0.0025 * 0.04))), "{grains:?}");
+    let pair = |c: &Vec<f64>| [c[0].min(c[1]) as usize, c[0].max(c[1]) as usize];
+    let sum = |of: [usize; 2]| chains.iter().filter(|c| pair(c) == of).map(|c| c[2]).sum::<f64>();
+    assert!(chains.iter().all(|c| [[0, 2], [0, 3], [1, 4], [3, 4]].contains(&pair(c))), "{chains:?}");
+    let ball = 2600.0 * 9.81 * volume(0);
+    let close = |force: f64, expected: f64, limit: f64| {
+        assert!((force / expected - 1.0).abs() < limit, "{force} N, expected {expected} N: {chains:?}");
+    };
+    close(sum([0, 2]), ball, 1e-3);
+    close(sum([1, 4]), ball, 1e-2);
+    // Weights of the drawn bodies.
+    let disk = 2600.0 * 9.81 * volume(3);
+    close(sum([3, 4]), ball + disk, 0.07);
+    close(sum([0, 3]), ball + disk + 2600.0 * 9.81 * volume(2), 0.07);
+    // Rows of the animation are the ends of the lines for VTK.
+    let lines = ends_of(&folder.join("r/frames/chains_00001.vtp"));
+    let rows = chains.iter().filter(|c| c[0] > 0.0 && c[1] > 0.0);
+    let mut count = 0;
+    for (line, row) in lines.iter().zip(rows) {
+        for (end, of) in line.iter().zip(row) {
+            let x = &grains[*of as usize - 1];
+            assert!((0..3).all(|d| (x[d] - end[d]).abs() < 1e-12), "{x:?}, expected {end:?}");
+        }
+        count += 1;
+    }
+    assert!(count == lines.len() && count >= 2, "{lines:?}");
+    convert(&folder, &["a.3df", "frames", "--grains", "a.dat"]).good();
+    let back = ends_of(&folder.join("frames/frames/chains_00001.vtp"));
+    assert_eq!(back.len(), lines.len());
+    for (a, b) in back.as_flattened().iter().zip(lines.as_flattened()) {
+        assert!((0..3).all(|d| (a[d] - b[d]).abs() < 1e-12), "{a:?}, expected {b:?}");
+    }
+    // Frames of earlier versions have no bodies.
+    let file = folder.join("r/frames/walls_00001.vtp");
+    let text = fs::read_to_string(&file).unwrap().replace("Name=\"body\"", "Name=\"bodies\"");
+    fs::write(&file, text).unwrap();
+    for output in ["b.3df", "b.dat"] {
+        let outcome = convert(&folder, &["r", output]);
+        let expected = "array body of CellData: found none, expected the bodies of polyhedra and disks; run the scene again";
+        assert!(outcome.code == 2 && outcome.stderr.contains(expected), "{}", outcome.stderr);
     }
 }
 

@@ -308,9 +308,15 @@ fn loads_on_structures_are_recorded() {
         let record = &json(&out.join("summary.json"))["structures"][0];
         assert!((record["largest"].as_f64().unwrap() / level - 1.0).abs() < 1e-12, "{record}");
         assert_eq!(record["sectors"].as_array().unwrap().len(), 12);
+        means_balance_load(kind, record, &history);
         let page = folder.join("page.html").display().to_string();
         trackbed(["report", &out.display().to_string(), "--out", &page]).good();
-        assert!(fs::read_to_string(&page).unwrap().contains("Largest load of each sector"));
+        let page = fs::read_to_string(&page).unwrap();
+        for title in
+            ["Largest load of each sector", "Mean load of each sector", "Mean horizontal load of each layer"]
+        {
+            assert!(page.contains(title), "{title}");
+        }
         for (old, new, expected) in [
             (
                 "[\"pile\"]",
@@ -323,6 +329,237 @@ fn loads_on_structures_are_recorded() {
         ] {
             refused(&text.replace(old, new), expected);
         }
+    }
+}
+
+/// Means by hand; around the frictionless cylinder the sectors' means add up to the mean load.
+fn means_balance_load(kind: &str, record: &serde_json::Value, history: &Table) {
+    let list = |key: &str| -> Vec<f64> {
+        record[key].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
+    };
+    let mean = |name: &str| {
+        let column = history.column(name);
+        column.iter().sum::<f64>() / column.len() as f64
+    };
+    let close = |a: f64, b: f64| (a - b).abs() <= 1e-9 * mean("tower_load_level");
+    for (key, column) in [("mean_sectors", "tower_sector"), ("mean_layers", "tower_layer")] {
+        for (k, found) in list(key).iter().enumerate() {
+            assert!(close(*found, mean(&format!("{column}{k}"))), "{kind}: {key} {k}");
+        }
+    }
+    // The only loaded layer.
+    let layers = list("mean_layers");
+    assert!(layers.len() == 3 && close(layers.iter().sum(), mean("tower_load_level")), "{layers:?}");
+    assert_eq!(list("layers").len(), 3);
+}
+
+/// Without friction the load of a cylinder is radial: F = −Σ mean load of a sector × its direction.
+#[test]
+fn mean_sector_loads_add_up() {
+    let (before, rest) = ICE.split_once("[[grains]]\nname = \"pile\"").unwrap();
+    let text = format!(
+        "{before}[[walls]]\nkind = \"cylinder\"\nname = \"pile\"\nmaterial = \"ice\"\nbase = [0, 0, -1]\nheight = 4\nradius = 0.8\n\
+         [[structure]]\nname = \"tower\"\nparts = [\"pile\"]\naxis = [0, 0]\nsectors = 360\n[periodic]\ny = [-8, 8]\n[time]{}\
+         history_interval = \"2 ms\"\n",
+        rest.split_once("[time]").unwrap().1
+    );
+    let folder = Folder::new("mean_sectors");
+    let scene = folder.write("scene.toml", &text);
+    run(&scene, &folder.join("out"), &["material.ice.friction=0", "time.grain_step_fraction=0.2"]).good();
+    let record = &json(&folder.join("out/summary.json"))["structures"][0];
+    let list = |key: &str| -> Vec<f64> {
+        record[key].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
+    };
+    let (sectors, mean) = (list("mean_sectors"), list("mean"));
+    let mut sum = [0.0; 2];
+    for (k, load) in sectors.iter().enumerate() {
+        let angle = (k as f64 + 0.5).to_radians();
+        sum = [sum[0] - load * angle.cos(), sum[1] - load * angle.sin()];
+    }
+    let level = mean[0].hypot(mean[1]);
+    let apart = (sum[0] - mean[0]).hypot(sum[1] - mean[1]) / level;
+    println!("sum of sectors {sum:?} N, mean load {mean:?} N, apart by {apart:.1e}");
+    // Half a sector: 0.0044 of the load.
+    assert!(level > 1.0 && apart < 0.005, "{sum:?}, expected {mean:?}");
+    // Loaded on the side that faces the drift only.
+    let lee: f64 = sectors[..90].iter().chain(&sectors[270..]).map(|f| f.abs()).sum();
+    assert!(lee < 1e-3 * level, "{lee} of {level}");
+}
+
+const HAZARD: &str = r#"
+[structure.hazard]
+threshold = 20
+separation = "20 ms"
+start = "0.1 s"
+loads = [50, 100]
+amber = 60
+red = "1 MN"
+law = "gumbel"
+confidence = 0.95
+exposure = "10 h"
+return_periods = [1, 10]
+
+[structure.hazard.level_ice]
+thickness = 0.3
+width = "6 m"
+top_width = "4 m"
+angle = "45 deg"
+friction = 0.1
+flexural_strength = "0.7 MPa"
+density = 915
+"#;
+
+fn hazardous() -> String {
+    let (before, rest) = ICE.split_once("[[grains]]\nname = \"pile\"").unwrap();
+    format!(
+        "{before}[[walls]]\nkind = \"cylinder\"\nname = \"pile\"\nmaterial = \"ice\"\nbase = [0, 0, -1]\nheight = 4\nradius = 0.8\n\
+         [[structure]]\nname = \"tower\"\nparts = [\"pile\"]\naxis = [0, 0]\n{HAZARD}\n[periodic]\ny = [-8, 8]\n[time]{}\
+         history_interval = \"2 ms\"\n",
+        rest.split_once("[time]").unwrap().1
+    )
+}
+
+/// Peaks, exceedance and warning level recomputed from `history.csv`; Ralston's load of the fifth decimal.
+#[test]
+fn hazard_follows_history() {
+    let folder = Folder::new("hazard");
+    let scene = folder.write("scene.toml", &hazardous());
+    let out = folder.join("out");
+    run(&scene, &out, &["time.grain_step_fraction=0.2", "time.end=3"]).good();
+    let said = fs::read_to_string(out.join("log.txt")).unwrap();
+    let history = Table::read(&out.join("history.csv"));
+    let rows: Vec<(f64, f64)> = history
+        .column("time")
+        .iter()
+        .zip(history.column("tower_load_level"))
+        .map(|(t, f)| (*t, f))
+        .filter(|(t, _)| *t >= 0.1)
+        .collect();
+    let hazard = &json(&out.join("summary.json"))["structures"][0]["hazard"];
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    // 200 points between two rows.
+    let above = |level: f64| {
+        let fine = rows.windows(2).map(|w| {
+            let count = (0..200)
+                .filter(|k| w[0].1 + (w[1].1 - w[0].1) * (f64::from(*k) + 0.5) / 200.0 > level)
+                .count();
+            count as f64 / 200.0 * (w[1].0 - w[0].0)
+        });
+        fine.sum::<f64>() / (rows.last().unwrap().0 - rows[0].0)
+    };
+    let levels = [50.0, 100.0, 60.0, 1e6];
+    for (e, level) in hazard["exceedance"].as_array().unwrap().iter().zip(levels) {
+        assert_eq!(number(&e["load"]), level);
+        assert!((number(&e["fraction_of_time"]) - above(level)).abs() < 2e-5, "{e}");
+    }
+    assert!(above(50.0) > 0.0 && hazard["exceedance"].as_array().unwrap().len() == 4, "{hazard}");
+    // Peaks: the largest row of each run of rows above 20 N, joined over less than 20 ms.
+    let mut peaks: Vec<(f64, f64)> = Vec::new();
+    let mut last: Option<usize> = None;
+    for (k, row) in rows.iter().enumerate().filter(|(_, row)| row.1 > 20.0) {
+        let gap = last.map(|l| if k == l + 1 { 0.0 } else { row.0 - rows[l + 1].0 });
+        match peaks.last_mut() {
+            Some(peak) if gap.unwrap() < 0.02 => {
+                if row.1 > peak.1 {
+                    *peak = *row;
+                }
+            }
+            _ => peaks.push(*row),
+        }
+        last = Some(k);
+    }
+    let found = hazard["peaks"].as_array().unwrap();
+    assert!(found.len() == peaks.len() && peaks.len() >= 5, "{} {}", found.len(), peaks.len());
+    for (found, peak) in found.iter().zip(&peaks) {
+        assert_eq!((number(&found[0]), number(&found[1])), *peak);
+    }
+    assert_eq!((&hazard["warning"], hazard["fit"]["law"].as_str()), (&"amber".into(), Some("gumbel")));
+    let [location, scale] = ["location", "scale"].map(|key| number(&hazard["fit"][key]));
+    let per_year = peaks.len() as f64 / number(&hazard["duration"]) * 36000.0;
+    for (r, period) in hazard["return_loads"].as_array().unwrap().iter().zip([1.0, 10.0]) {
+        let y = (number(&r["load"]["value"]) - location) / scale;
+        let exceeded = 1.0 - (-(-y).exp()).exp();
+        assert!((exceeded * per_year * period - 1.0).abs() < 1e-6, "{r}");
+    }
+    let largest = rows.iter().fold(0.0_f64, |m, row| m.max(row.1));
+    assert!((number(&hazard["level_ice"]) / 179_500.129_2 - 1.0).abs() < 1e-8, "{hazard}");
+    assert!((number(&hazard["over_level_ice"]) * 179_500.129_2 / largest - 1.0).abs() < 1e-8, "{hazard}");
+    for text in ["warning level amber", "1-year load", "times the load of level ice"] {
+        assert!(said.contains(text), "{text}: {said}");
+    }
+    let page = folder.join("page.html").display().to_string();
+    trackbed(["report", &out.display().to_string(), "--out", &page]).good();
+    let page = fs::read_to_string(&page).unwrap();
+    for text in [
+        "<h2>Hazard</h2>",
+        "run warned",
+        "Warning level amber.",
+        "Peaks of the horizontal load",
+        "return period [years]",
+    ] {
+        assert!(page.contains(text), "{text}");
+    }
+}
+
+#[test]
+fn rejects_bad_hazards() {
+    let text = hazardous();
+    for (old, new, expected) in [
+        (
+            "threshold = 20\n",
+            "threshold = 0\n",
+            "structure.0.hazard.threshold: found 0, expected a load above 0",
+        ),
+        (
+            "[50, 100]",
+            "[100, 50]",
+            "structure.0.hazard.loads: found [100.0, 50.0], expected at most 100 loads above 0, ascending",
+        ),
+        ("red = \"1 MN\"", "red = 50", "structure.0.hazard.red: found 50, expected a load above `amber`"),
+        (
+            "confidence = 0.95",
+            "confidence = 1",
+            "structure.0.hazard.confidence: found 1, expected between 0 and 1",
+        ),
+        (
+            "exposure = \"10 h\"\n",
+            "",
+            "structure.0.hazard.return_periods: found without `exposure`, expected both",
+        ),
+        (
+            "return_periods = [1, 10]\n",
+            "",
+            "structure.0.hazard.exposure: found without `return_periods`, expected both",
+        ),
+        (
+            "[1, 10]",
+            "[0]",
+            "structure.0.hazard.return_periods: found [0.0], expected at most 100 periods above 0",
+        ),
+        (
+            "flexural_strength = \"0.7 MPa\"\n",
+            "",
+            "structure.0.hazard.level_ice.strength: found nothing, expected `strength` or `flexural_strength`",
+        ),
+        (
+            "flexural_strength",
+            "strength",
+            "structure.0.hazard.level_ice.angle: found, but it has no effect without `flexural_strength`",
+        ),
+        (
+            "top_width = \"4 m\"",
+            "top_width = 7",
+            "structure.0.hazard.level_ice.top_width: found 7, expected at least 0, below `width`",
+        ),
+        (
+            "friction = 0.1\nflex",
+            "friction = 3\nflex",
+            "structure.0.hazard.level_ice.friction: found 3, expected a friction at which ice slides up the cone",
+        ),
+        ("law = \"gumbel\"", "law = \"normal\"", "structure.0.hazard.law: found"),
+    ] {
+        assert!(text.contains(old), "{old}");
+        refused(&text.replace(old, new), expected);
     }
 }
 

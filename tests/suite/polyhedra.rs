@@ -222,7 +222,28 @@ fn frames_have_the_fields_of_polyhedra() {
     run(&scene, &folder.join("few"), &["output.fields=[\"spin\"]"]).good();
     let (_, _, few) = vtk(&folder.join("few/frames/walls_00001.vtp"));
     let names: Vec<_> = few.keys().map(String::as_str).collect();
-    assert_eq!(names, ["id", "kind", "part", "spin"]);
+    assert_eq!(names, ["body", "centre", "id", "kind", "part", "spin"]);
+}
+
+/// A stone after 0.16 m in a box of 0.24 m is drawn at −0.08 m, as spheres and contacts.
+#[test]
+fn frames_wrap_stones() {
+    let end = "\n[periodic]\ny = [-0.12, 0.12]\n\n[time]\nend = \"80 ms\"\n";
+    let text = FLYING.replace("spin = [0.0, 0.0, 5.0]\n", "").replace("\n[time]\nend = \"1 ms\"\n", end);
+    let (folder, scene) = written("polyhedra_wrapped", &text);
+    for (name, x) in [("slow.csv", -0.1), ("fast.csv", 0.1)] {
+        folder.write(name, &format!("{x}, 0, 0, 1, 0, 0, 0, 0.03, 0\n"));
+    }
+    let out = folder.join("out");
+    run(&scene, &out, &[]).good();
+    let (points, _, cells) = vtk(&out.join("frames/walls_00001.vtp"));
+    let (body, centre) = (&cells["body"].1, &cells["centre"].1);
+    let slow = body.iter().position(|b| *b == 0.0).unwrap();
+    assert!((centre[3 * slow + 1] + 0.08).abs() < 1e-6, "{:?}", &centre[3 * slow..3 * slow + 3]);
+    // The stone of x = −0.1 + 0.08 m and size 0.06 m; the plane is larger.
+    let near = |k: &usize| (points[3 * k] + 0.02).abs() < 0.035 && points[3 * k + 2].abs() < 0.3;
+    let heights: Vec<f64> = (0..points.len() / 3).filter(near).map(|k| points[3 * k + 1]).collect();
+    assert!(heights.len() > 8 && heights.iter().all(|y| (y + 0.08).abs() < 0.04), "{heights:?}");
 }
 
 /// Rigid-body motion: v − v' = ω × (x − x').

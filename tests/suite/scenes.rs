@@ -3,6 +3,7 @@
 use super::support::{
     COUPLED, Folder, GRAINS, SOLID, Table, json, repository, run, scene_folder, snapshot, trackbed,
 };
+use super::tecplot_zone::read;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -191,49 +192,59 @@ fn coupled_tables_have_their_columns() {
     }
 }
 
+/// Every field that VTK reads from the same frame, at the nodes and elements of the mesh.
 #[test]
-fn tecplot_file_is_complete() {
-    let folder = coupled("tecplot");
-    let text = fs::read_to_string(folder.join("out/tecplot/solid_00002.dat")).unwrap();
-    let variables = text.lines().find_map(|l| l.strip_prefix("VARIABLES = ")).unwrap();
-    let expected = [
-        "x",
-        "y",
-        "z",
-        "ux",
-        "uy",
-        "uz",
-        "u",
-        "sxx",
-        "syy",
-        "szz",
-        "sxy",
-        "syz",
-        "szx",
-        "von_mises",
-        "eps_p",
-    ];
-    assert_eq!(variables.split_whitespace().map(|v| v.trim_matches('"')).collect::<Vec<_>>(), expected);
-    let zone = text.lines().find(|l| l.starts_with("ZONE")).unwrap();
-    let count =
-        |key: &str| -> usize { zone.split(key).nth(1).unwrap().split(',').next().unwrap().parse().unwrap() };
-    let (points, bricks) = (count("N="), count("E="));
+fn tecplot_file_equals_vtk_frame() {
+    let folder = scene_folder("tecplot", COUPLED);
+    let (scene, out) = (folder.join("scene.toml"), folder.join("out"));
+    let fields = "output.fields=[\"velocity\", \"stress\", \"von_mises\", \"equivalent_plastic_strain\", \
+                  \"yield_function\", \"strain\", \"plastic_strain\"]";
+    run(&scene, &out, &[fields]).good();
+    let zone = read(&fs::read_to_string(out.join("tecplot/solid_00002.dat")).unwrap());
+    let (points, point, cell) = vtk(&out.join("frames/solid_00002.vtu"));
     // 81 nodes, 36 face centres, 8 element centres; eight bricks per element.
-    assert_eq!((points, bricks), (81 + 36 + 8, 64));
-    assert!(text.contains("ZONETYPE=FEBRICK"));
-    let numbers: Vec<Vec<f64>> = text
-        .lines()
-        .skip_while(|l| !l.starts_with("DATAPACKING"))
-        .skip(1)
-        .map(|l| l.split_whitespace().map(|v| v.parse().unwrap()).collect())
-        .collect();
-    assert_eq!(numbers.len(), points + bricks);
-    assert!(numbers[..points].iter().all(|row| row.len() == 15 && row.iter().all(|v| v.is_finite())));
-    assert!(
-        numbers[points..]
-            .iter()
-            .all(|row| row.len() == 8 && row.iter().all(|v| (1.0..=points as f64).contains(v)))
-    );
+    assert_eq!((zone.points["x"].len(), zone.bricks.len()), (81 + 36 + 8, 64));
+    assert!(zone.bricks.iter().flatten().all(|p| *p < 125));
+    let equal = |name: &str, found: &[f64], expected: &[f64]| {
+        let size = expected.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        assert_eq!(found.len(), expected.len(), "{name}");
+        let apart = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(apart <= 1e-9 * size, "{name}: apart by {apart}, largest value {size}");
+        size
+    };
+    let matrix = [("xx", 0), ("yy", 4), ("zz", 8), ("xy", 1), ("yz", 5), ("zx", 6)];
+    let axes = [("x", 0), ("y", 1), ("z", 2)];
+    let short = [
+        ("displacement", "u"),
+        ("velocity", "v"),
+        ("stress", "s"),
+        ("strain", "e"),
+        ("plastic_strain", "ep"),
+    ];
+    let mut all = point.clone();
+    all.insert("".into(), (3, points));
+    for (name, (components, values)) in &all {
+        let stem = match name.as_str() {
+            "equivalent_plastic_strain" => "eps_p",
+            name => short.iter().find(|(long, _)| *long == name).map_or(name, |(_, short)| short),
+        };
+        let of: &[(&str, usize)] = if *components == 9 { &matrix } else { &axes };
+        let of = if *components == 1 { &[("", 0)] } else { of };
+        for (end, k) in of {
+            let expected: Vec<f64> = values.iter().skip(*k).step_by(*components).copied().collect();
+            let name = format!("{stem}{end}");
+            let found = zone.points.get(&name).unwrap_or_else(|| panic!("no {name} in {:?}", zone.header));
+            let size = equal(&name, &found[..81], &expected);
+            assert!(size > 0.0 || name.starts_with("ep"), "{name} is zero");
+        }
+    }
+    // The sum of squares is computed by the writer.
+    assert_eq!(zone.points.len(), 3 + 3 + 1 + 3 + 3 * 6 + 4);
+    for name in ["material", "element_id"] {
+        let expected: Vec<f64> = cell[name].1.iter().flat_map(|v| [*v; 8]).collect();
+        equal(name, &zone.cells[name], &expected);
+    }
+    assert_eq!(zone.cells.len(), cell.len());
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+mod extreme;
 mod parameters;
 mod parts;
 mod refused;

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::failure::Failure;
 use crate::read::ReadError;
 use crate::read::vtk_arrays::Arrays;
-use crate::write::WallKind;
+use crate::write::{STONE_BODY, STONE_CENTRE, WallKind};
 
 /// Lines between contact partners.
 pub struct Chains {
@@ -105,7 +105,8 @@ impl Walls {
 
     /// Returns the colour fields of polyhedral grains; vectors count by magnitude.
     pub fn fields(&self) -> Vec<String> {
-        let names = self.arrays.names("CellData").filter(|(name, _)| !["id", "kind"].contains(name));
+        let geometry = ["id", "kind", STONE_BODY, STONE_CENTRE];
+        let names = self.arrays.names("CellData").filter(|(name, _)| !geometry.contains(name));
         names.map(|(name, _)| if name == "velocity" { "speed".into() } else { name.to_string() }).collect()
     }
 

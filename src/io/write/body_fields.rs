@@ -46,6 +46,12 @@ pub const BODY_FIELDS: [BodyField; 16] = [
     field("broken_by_shear", "Bonds broken by shear", "", OnRequest),
 ];
 
+/// Body id on polygons of polyhedral grains, as `id` of spheres.
+pub const STONE_BODY: &str = "body";
+
+/// Centre of mass on polygons of polyhedral grains [m].
+pub const STONE_CENTRE: &str = "centre";
+
 /// Derived fields.
 pub const MADE_FIELDS: [BodyField; 3] = [
     field("speed", "Speed", "m/s", Always),

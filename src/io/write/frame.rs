@@ -43,6 +43,39 @@ pub struct SolidFrame<'a> {
     pub tensors: &'a [(&'static str, Vec<[f64; 6]>)],
 }
 
+/// Values of a nodal field.
+#[derive(Clone, Copy, Debug)]
+pub enum NodalValues<'a> {
+    /// Number per node.
+    Numbers(&'a [f64]),
+    /// Three numbers per node. Shape `[3 * nodes]`.
+    Vectors(&'a [f64]),
+    /// Symmetric tensor per node: xx, yy, zz, xy, yz, zx.
+    Tensors(&'a [[f64; 6]]),
+}
+
+impl<'a> SolidFrame<'a> {
+    /// Returns the nodal fields by name; all writers take theirs from here.
+    pub fn fields(&self) -> Vec<(&'static str, NodalValues<'a>)> {
+        use NodalValues::{Numbers, Tensors, Vectors};
+        let mut fields = vec![
+            ("displacement", Vectors(self.displacement)),
+            ("velocity", Vectors(self.velocity)),
+            ("stress", Tensors(self.stress)),
+            ("von_mises", Numbers(self.von_mises)),
+            ("equivalent_plastic_strain", Numbers(self.equivalent_plastic_strain)),
+            ("yield_function", Numbers(self.yield_function)),
+        ];
+        fields.extend(self.tensors.iter().map(|(name, values)| (*name, Tensors(values))));
+        fields
+    }
+
+    /// Returns the integers per element by name.
+    pub fn element_fields(&self) -> [(&'static str, &'a [u32]); 2] {
+        [("material", &self.mesh.materials), ("element_id", &self.mesh.element_ids)]
+    }
+}
+
 /// Grains, one item per sphere, with the `id` of its body. Shape of all arrays `[spheres]`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GrainFrame {

@@ -31,10 +31,14 @@ pub mod vtp;
 pub mod vtu;
 pub mod writer;
 
-pub use body_fields::{BODY_FIELDS, BodyField, MADE_FIELDS, Written, body_field, body_fields};
+pub use body_fields::{
+    BODY_FIELDS, BodyField, MADE_FIELDS, STONE_BODY, STONE_CENTRE, Written, body_field, body_fields,
+};
 pub use choice::{Choice, SOLID_EXTRA, SOLID_FIELDS};
 pub use error::WriteError;
-pub use frame::{ChainFrame, Frame, GrainFrame, NO_BODY, SolidFrame, Values, WallFrame, WallKind};
+pub use frame::{
+    ChainFrame, Frame, GrainFrame, NO_BODY, NodalValues, SolidFrame, Values, WallFrame, WallKind,
+};
 pub use mesh_file::{MeshOptions, write_mesh_file};
 pub use writer::{Format, Mark, Part, Writers};
 

@@ -1,4 +1,4 @@
-//! Solid for Tecplot: ASCII `.dat` file, one FEBRICK zone.
+//! Solid for Tecplot: ASCII `.dat` file, one FEBRICK zone in blocks, with the fields of the VTK files.
 //!
 //! Tecplot has no 20-node brick. Each hex20 becomes eight bricks; missing points follow from its shape
 //! functions:
@@ -18,20 +18,31 @@ use std::path::{Path, PathBuf};
 
 use trackbed_fem::ElementKind;
 use trackbed_fem::element::hex20;
-use trackbed_fem::mesh::Mesh;
+use trackbed_fem::stress;
 
 use crate::read::degenerate::to_brick;
 
 use super::atomic;
+use super::choice::Choice;
 use super::error::{WriteError, check_field};
-use super::frame::{Frame, SolidFrame};
+use super::frame::{Frame, NodalValues, SolidFrame};
 use super::writer::{Format, Mark, Part, Writer};
 
-const VARIABLES: &str = "\"x\" \"y\" \"z\" \"ux\" \"uy\" \"uz\" \"u\" \"sxx\" \"syy\" \"szz\" \"sxy\" \"syz\" \"szx\" \
-     \"von_mises\" \"eps_p\"";
+/// Short names of fields; others keep theirs, tensors with `_`.
+const SHORT: [(&str, &str); 6] = [
+    ("displacement", "u"),
+    ("velocity", "v"),
+    ("stress", "s"),
+    ("strain", "e"),
+    ("plastic_strain", "ep"),
+    ("equivalent_plastic_strain", "eps_p"),
+];
 
-/// Point values: x y z, ux uy uz, six stresses, equivalent plastic strain.
-type Values = [f64; 13];
+const AXES: [&str; 3] = ["x", "y", "z"];
+const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
+
+/// Values per line, far below the limit of 32,000 characters.
+const PER_LINE: usize = 8;
 
 /// 3x3x3 lattice, first axis fastest: 0–19 nodes, 20–25 face centres, 26 body centre.
 const LATTICE: [usize; 27] =
@@ -64,45 +75,109 @@ impl Writer for Tecplot {
     fn frame(&mut self, frame: &Frame<'_>) -> Result<(), WriteError> {
         let Some(solid) = &frame.solid else { return Ok(()) };
         let file = self.folder.join(format!("solid_{:05}.dat", frame.number));
-        write_solid(&file, solid, "solid", frame.time, 1)
+        write_solid(&file, solid, frame.fields, ("solid", frame.time, 1))
     }
 }
 
-/// Writes the solid at `time` [s] as `zone`; files of one `strand` (≥ 1) form a time series.
+/// Writes the solid as a zone of name, time [s], strand; files of one strand (≥ 1) form a time series.
 ///
 /// # Errors
 /// Wrong field length, non-finite values; I/O errors.
 pub fn write_solid(
     file: &Path,
     frame: &SolidFrame,
-    zone: &str,
-    time: f64,
-    strand: u32,
+    choice: Choice<'_>,
+    zone: (&str, f64, u32),
 ) -> Result<(), WriteError> {
     let n = frame.mesh.node_count();
-    check_field(file, "time", &[time], 1, 1)?;
+    check_field(file, "time", &[zone.1], 1, 1)?;
     check_field(file, "coordinates", frame.mesh.coordinates.as_flattened(), 3, n)?;
-    check_field(file, "displacement", frame.displacement, 3, n)?;
-    check_field(file, "stress", frame.stress.as_flattened(), 6, n)?;
-    check_field(file, "von_mises", frame.von_mises, 1, n)?;
-    check_field(file, "equivalent_plastic_strain", frame.equivalent_plastic_strain, 1, n)?;
-    let (bricks, extra) = split(frame);
-    let zone = zone.replace('"', "'");
-    atomic::write(file, |out| {
-        write_text(out, frame, &zone, time, strand, &bricks, &extra).map_err(WriteError::io(file))
-    })
+    for (name, values) in frame.fields() {
+        match values {
+            NodalValues::Numbers(values) => check_field(file, name, values, 1, n)?,
+            NodalValues::Vectors(values) => check_field(file, name, values, 3, n)?,
+            NodalValues::Tensors(values) => check_field(file, name, values.as_flattened(), 6, n)?,
+        }
+    }
+    let (bricks, centres) = split(frame);
+    let columns = columns(frame, choice, &centres);
+    atomic::write(file, |out| write_text(out, frame, zone, &columns, &bricks).map_err(WriteError::io(file)))
+}
+
+/// Brick: point indices from 0, nodes first, and element.
+type Brick = ([usize; 8], usize);
+
+/// Nodes and weights of an additional point.
+type Centre = Vec<(usize, f64)>;
+
+struct Column {
+    name: String,
+    values: Vec<f64>,
+}
+
+/// Variables at nodes, then at additional points.
+fn columns(frame: &SolidFrame, choice: Choice<'_>, centres: &[Centre]) -> Vec<Column> {
+    let n = frame.mesh.node_count();
+    let column = |name: String, at: &dyn Fn(usize) -> f64| {
+        let sum = |centre: &Centre| centre.iter().map(|(node, weight)| weight * at(*node)).sum::<f64>();
+        Column { name, values: (0..n).map(at).chain(centres.iter().map(sum)).collect() }
+    };
+    let place = |axis: usize| column(AXES[axis].into(), &move |node| frame.mesh.coordinates[node][axis]);
+    let mut all: Vec<Column> = (0..3).map(place).collect();
+    for (name, values) in frame.fields() {
+        if !choice.has(name) {
+            continue;
+        }
+        let short = SHORT.iter().find(|(long, _)| *long == name).map(|(_, short)| *short);
+        match values {
+            NodalValues::Vectors(values) => {
+                let stem = short.map_or_else(|| format!("{name}_"), String::from);
+                all.extend((0..3).map(|k| column(format!("{stem}{}", AXES[k]), &move |i| values[3 * i + k])));
+                if name == "displacement" {
+                    let first = all.len() - 3;
+                    let length = |p: usize| (0..3).map(|k| all[first + k].values[p].powi(2)).sum::<f64>();
+                    let values = (0..all[first].values.len()).map(|p| length(p).sqrt()).collect();
+                    all.push(Column { name: stem, values });
+                }
+            }
+            NodalValues::Tensors(values) => {
+                let stem = short.map_or_else(|| format!("{name}_"), String::from);
+                let of = |k: usize| column(format!("{stem}{}", COMPONENTS[k]), &move |i| values[i][k]);
+                all.extend((0..6).map(of));
+            }
+            NodalValues::Numbers(values) => {
+                let mut added = column(short.unwrap_or(name).into(), &|i| values[i]);
+                for (value, centre) in added.values[n..].iter_mut().zip(centres) {
+                    match name {
+                        // Not linear in the stress.
+                        "von_mises" => *value = von_mises(frame, centre),
+                        "equivalent_plastic_strain" => *value = value.max(0.0),
+                        _ => {}
+                    }
+                }
+                all.push(added);
+            }
+        }
+    }
+    let ids = |node: usize| f64::from(frame.mesh.node_ids[node]);
+    let none = std::iter::repeat_n(0.0, centres.len());
+    all.push(Column { name: "node_id".into(), values: (0..n).map(ids).chain(none).collect() });
+    all
+}
+
+fn von_mises(frame: &SolidFrame, centre: &Centre) -> f64 {
+    let sum = |k: usize| centre.iter().map(|(node, weight)| weight * frame.stress[*node][k]).sum();
+    stress::von_mises(&std::array::from_fn(sum))
 }
 
 fn write_text(
     out: &mut dyn Write,
     frame: &SolidFrame,
-    zone: &str,
-    time: f64,
-    strand: u32,
-    bricks: &[[usize; 8]],
-    extra: &[Values],
+    (zone, time, strand): (&str, f64, u32),
+    columns: &[Column],
+    bricks: &[Brick],
 ) -> std::io::Result<()> {
-    let n = frame.mesh.node_count();
+    let (n, zone) = (frame.mesh.node_count(), zone.replace('"', "'"));
     writeln!(out, "# SI units; coordinates undeformed; stress tension positive.")?;
     writeln!(
         out,
@@ -110,54 +185,43 @@ fn write_text(
     )?;
     writeln!(out, "# face and body centres, interpolated with the shape functions of the 20-node element.")?;
     writeln!(out, "TITLE = \"{zone}\"")?;
-    writeln!(out, "VARIABLES = {VARIABLES}")?;
-    writeln!(out, "ZONE T=\"{zone}\", N={}, E={},", n + extra.len(), bricks.len())?;
-    writeln!(out, "DATAPACKING=POINT, ZONETYPE=FEBRICK, STRANDID={strand}, SOLUTIONTIME={time:e}")?;
-    for node in 0..n {
-        write_point(out, &values(frame, node), frame.von_mises[node])?;
+    let cells = frame.element_fields();
+    let names = columns.iter().map(|c| c.name.as_str()).chain(cells.iter().map(|(name, _)| *name));
+    writeln!(out, "VARIABLES = {}", names.map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(" "))?;
+    let points = columns.first().map_or(0, |c| c.values.len());
+    writeln!(out, "ZONE T=\"{zone}\", N={points}, E={},", bricks.len())?;
+    writeln!(out, "DATAPACKING=BLOCK, ZONETYPE=FEBRICK, STRANDID={strand}, SOLUTIONTIME={time:e},")?;
+    let first = columns.len() + 1;
+    writeln!(out, "VARLOCATION=([{first}-{}]=CELLCENTERED)", columns.len() + cells.len())?;
+    for column in columns {
+        write_block(out, column.values.iter().map(|value| format!("{value:.9e}")))?;
     }
-    for point in extra {
-        write_point(out, point, von_mises(point))?;
+    for (_, values) in cells {
+        write_block(out, bricks.iter().map(|(_, element)| values[*element].to_string()))?;
     }
-    for brick in bricks {
+    for (brick, _) in bricks {
         let line = brick.iter().map(|p| (p + 1).to_string()).collect::<Vec<_>>().join(" ");
         writeln!(out, "{line}")?;
     }
     Ok(())
 }
 
-fn write_point(out: &mut dyn Write, v: &Values, von_mises: f64) -> std::io::Result<()> {
-    let total = (v[3] * v[3] + v[4] * v[4] + v[5] * v[5]).sqrt();
-    let mut line = String::with_capacity(256);
-    for value in v[..6].iter().chain([&total]).chain(&v[6..12]).chain([&von_mises, &v[12]]) {
-        line += &format!("{value:.9e} ");
-    }
-    writeln!(out, "{}", line.trim_end())
+fn write_block(out: &mut dyn Write, values: impl Iterator<Item = String>) -> std::io::Result<()> {
+    let values: Vec<String> = values.collect();
+    values.chunks(PER_LINE).try_for_each(|line| writeln!(out, "{}", line.join(" ")))
 }
 
-fn values(frame: &SolidFrame, node: usize) -> Values {
-    let (x, u, s) = (frame.mesh.coordinates[node], &frame.displacement[3 * node..], frame.stress[node]);
-    let eps = frame.equivalent_plastic_strain[node];
-    [x[0], x[1], x[2], u[0], u[1], u[2], s[0], s[1], s[2], s[3], s[4], s[5], eps]
-}
-
-fn von_mises(v: &Values) -> f64 {
-    let [xx, yy, zz, xy, yz, zx] = [v[6], v[7], v[8], v[9], v[10], v[11]];
-    let deviatoric = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
-    (0.5 * deviatoric + 3.0 * (xy * xy + yz * yz + zx * zx)).sqrt()
-}
-
-/// Small bricks (point indices from 0, nodes first) and additional points.
-fn split(frame: &SolidFrame) -> (Vec<[usize; 8]>, Vec<Values>) {
-    let mesh: &Mesh = frame.mesh;
+/// Small bricks and additional points.
+fn split(frame: &SolidFrame) -> (Vec<Brick>, Vec<Centre>) {
+    let mesh = frame.mesh;
     let n = mesh.node_count();
-    let mut extra = Vec::new();
+    let mut extra: Vec<Centre> = Vec::new();
     let mut centres: HashMap<[u32; 4], usize> = HashMap::new();
     let mut bricks = Vec::with_capacity(8 * mesh.element_count());
-    for (element, &kind) in mesh.connectivity.iter().zip(mesh.connectivity.kinds()) {
+    for (at, (element, &kind)) in mesh.connectivity.iter().zip(mesh.connectivity.kinds()).enumerate() {
         if kind != ElementKind::Hex20 {
             let brick = to_brick(kind.linear(), &element[..kind.corner_count()]);
-            bricks.push(std::array::from_fn(|c| brick[c] as usize));
+            bricks.push((std::array::from_fn(|c| brick[c] as usize), at));
             continue;
         }
         let mut points = [0; 27];
@@ -170,27 +234,16 @@ fn split(frame: &SolidFrame) -> (Vec<[usize; 8]>, Vec<Values>) {
             points[20 + side] = *centres.entry(key).or_insert_with(|| {
                 let corner = |c: &usize| (element[*c] as usize, -0.25);
                 let middle = |m: &usize| (element[*m] as usize, 0.5);
-                extra.push(combine(frame, face[..4].iter().map(corner).chain(face[4..].iter().map(middle))));
+                extra.push(face[..4].iter().map(corner).chain(face[4..].iter().map(middle)).collect());
                 n + extra.len() - 1
             });
         }
         let weight = |(local, node): (usize, &u32)| (*node as usize, if local < 8 { -0.25 } else { 0.25 });
-        extra.push(combine(frame, element.iter().enumerate().map(weight)));
+        extra.push(element.iter().enumerate().map(weight).collect());
         points[26] = n + extra.len() - 1;
-        bricks.extend(LOWEST.map(|low| BRICK.map(|corner| points[LATTICE[low + corner]])));
+        bricks.extend(LOWEST.map(|low| (BRICK.map(|corner| points[LATTICE[low + corner]]), at)));
     }
     (bricks, extra)
-}
-
-fn combine(frame: &SolidFrame, weights: impl Iterator<Item = (usize, f64)>) -> Values {
-    let mut sum = [0.0; 13];
-    for (node, weight) in weights {
-        for (s, v) in sum.iter_mut().zip(values(frame, node)) {
-            *s += weight * v;
-        }
-    }
-    sum[12] = sum[12].max(0.0);
-    sum
 }
 
 #[cfg(test)]

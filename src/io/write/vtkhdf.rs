@@ -11,7 +11,7 @@ use crate::read::foreign_elements::foreign;
 
 use super::choice::Choice;
 use super::error::{WriteError, check_field};
-use super::frame::{Frame, GrainFrame, SolidFrame, Values as FieldValues};
+use super::frame::{Frame, GrainFrame, NodalValues, SolidFrame, Values as FieldValues};
 use super::hdf5::{Attribute, File, GroupId, Kind};
 use super::vtk::matrices;
 use super::writer::{Format, Mark, Part, Writer};
@@ -216,21 +216,14 @@ impl Series {
 
     fn solid(&mut self, time: f64, frame: &SolidFrame<'_>, choice: Choice<'_>) -> Result<(), WriteError> {
         let mesh = frame.mesh;
-        let stress = Values::Doubles(9, Cow::Owned(matrices(frame.stress)));
-        let mut fields = vec![
-            doubles("displacement", 3, frame.displacement),
-            doubles("velocity", 3, frame.velocity),
-            Field { name: "stress", values: stress },
-            doubles("von_mises", 1, frame.von_mises),
-            doubles("equivalent_plastic_strain", 1, frame.equivalent_plastic_strain),
-            doubles("yield_function", 1, frame.yield_function),
-        ];
-        fields.extend(
-            frame.tensors.iter().map(|(name, values)| Field {
-                name,
-                values: Values::Doubles(9, Cow::Owned(matrices(values))),
-            }),
-        );
+        let field = |(name, values)| match values {
+            NodalValues::Numbers(values) => doubles(name, 1, values),
+            NodalValues::Vectors(values) => doubles(name, 3, values),
+            NodalValues::Tensors(values) => {
+                Field { name, values: Values::Doubles(9, Cow::Owned(matrices(values))) }
+            }
+        };
+        let fields: Vec<Field<'_>> = frame.fields().into_iter().map(field).collect();
         let nodes = mesh.node_count();
         check_field(&self.path, "time", &[time], 1, 1)?;
         check_field(&self.path, "points", mesh.coordinates.as_flattened(), 3, nodes)?;
@@ -254,8 +247,9 @@ impl Series {
             let data = self.file.group(ROOT, "PointData");
             self.field(data, &ids("node_id", &mesh.node_ids))?;
             let data = self.file.group(ROOT, "CellData");
-            self.field(data, &ids("material", &mesh.materials))?;
-            self.field(data, &ids("element_id", &mesh.element_ids))?;
+            for (name, values) in frame.element_fields() {
+                self.field(data, &ids(name, values))?;
+            }
         }
         let place = Place { part: 0, points: 0, cells: vec![0] };
         let fixed: [(&str, &[&'static str]); 2] =

@@ -11,7 +11,7 @@ use trackbed_fem::mesh::Mesh;
 
 use super::choice::Choice;
 use super::error::WriteError;
-use super::frame::SolidFrame;
+use super::frame::{NodalValues, SolidFrame};
 use super::vtk::{self, Array, Fields, Section};
 
 /// Writes the solid: point and cell data.
@@ -20,14 +20,12 @@ use super::vtk::{self, Array, Fields, Section};
 /// Wrong field length, non-finite values; I/O errors.
 pub fn write_solid(file: &Path, frame: &SolidFrame, choice: Choice<'_>) -> Result<(), WriteError> {
     let mut fields = Fields::of_points(file, frame.mesh.node_count()).only(choice);
-    fields.vector("displacement", frame.displacement)?;
-    fields.vector("velocity", frame.velocity)?;
-    fields.tensor("stress", frame.stress)?;
-    fields.scalar("von_mises", frame.von_mises)?;
-    fields.scalar("equivalent_plastic_strain", frame.equivalent_plastic_strain)?;
-    fields.scalar("yield_function", frame.yield_function)?;
-    for (name, values) in frame.tensors {
-        fields.tensor(name, values)?;
+    for (name, values) in frame.fields() {
+        match values {
+            NodalValues::Numbers(values) => fields.scalar(name, values)?,
+            NodalValues::Vectors(values) => fields.vector(name, values)?,
+            NodalValues::Tensors(values) => fields.tensor(name, values)?,
+        }
     }
     fields.ids("node_id", &frame.mesh.node_ids)?;
     write_grid(file, frame.mesh, fields, &[])

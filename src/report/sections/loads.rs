@@ -18,10 +18,13 @@ pub fn loads(runs: &[RunData]) -> Option<Section> {
         overlay(runs, |run| names(run).into_iter().filter_map(|name| of(name, f, run)).collect())
     };
     let time = curves(&|table, name| table.points(history::TIME, history::STRUCTURE_LOAD_LEVEL.of(name)));
-    let sectors = curves(&|table, name| rose(table, name));
-    let layers = curves(&|table, name| {
-        let largest = largest(table, history::STRUCTURE_LAYER.of(name));
-        (!largest.is_empty()).then(|| largest.iter().enumerate().map(|(k, f)| [*f, k as f64]).collect())
+    let [sectors, mean_sectors] =
+        [largest, mean].map(|take: Take| curves(&|table, name| rose(table, name, take)));
+    let [layers, mean_layers] = [largest, mean].map(|take: Take| {
+        curves(&|table, name| {
+            let loads = parts(table, history::STRUCTURE_LAYER.of(name), take);
+            (!loads.is_empty()).then(|| loads.iter().enumerate().map(|(k, f)| [*f, k as f64]).collect())
+        })
     });
     let side = |name: &str| Axis::new(name, "N");
     let motion = |column: &'static Definition| {
@@ -45,16 +48,22 @@ pub fn loads(runs: &[RunData]) -> Option<Section> {
             accelerations,
         ),
         figure("Largest load of each sector", side("towards the axis, from x"), side("from y"), sectors),
+        figure("Mean load of each sector", side("towards the axis, from x"), side("from y"), mean_sectors),
         figure(
             "Largest horizontal load of each layer",
             side("load"),
             Axis::count("layer, from below"),
             layers,
         ),
+        figure(
+            "Mean horizontal load of each layer",
+            side("load"),
+            Axis::count("layer, from below"),
+            mean_layers,
+        ),
     ]);
     let note = paragraph(
-        "The closed curve has for each sector a point in the direction that the sector looks to, as far from the origin as its largest load \
-         towards the axis.",
+        "The closed curves have a point in the middle direction of each sector; its distance from the origin is the load towards the axis.",
     );
     if html.0.is_empty() { None } else { Section::new("loads", "Loads on structures", joined([html, note])) }
 }
@@ -63,14 +72,23 @@ fn names(run: &RunData) -> Vec<&str> {
     run.table("history").map(|t| t.items(history::STRUCTURE_LOAD_LEVEL)).unwrap_or_default()
 }
 
-fn largest(table: &Table, list: Name<'_>) -> Vec<f64> {
-    let of = |k: usize| table.column(list.at(k));
-    (0..).map_while(of).map(|column| column.iter().fold(0.0, |m: f64, x| m.max(*x))).collect()
+type Take = fn(&[f64]) -> f64;
+
+fn largest(column: &[f64]) -> f64 {
+    column.iter().fold(0.0, |m: f64, x| m.max(*x))
+}
+
+fn mean(column: &[f64]) -> f64 {
+    column.iter().sum::<f64>() / column.len().max(1) as f64
+}
+
+fn parts(table: &Table, list: Name<'_>, take: Take) -> Vec<f64> {
+    (0..).map_while(|k: usize| table.column(list.at(k))).map(take).collect()
 }
 
 /// Sector loads as a closed curve.
-fn rose(table: &Table, name: &str) -> Option<Vec<[f64; 2]>> {
-    let loads = largest(table, history::STRUCTURE_SECTOR.of(name));
+fn rose(table: &Table, name: &str, take: Take) -> Option<Vec<[f64; 2]>> {
+    let loads = parts(table, history::STRUCTURE_SECTOR.of(name), take);
     let count = loads.len();
     (count > 1).then(|| {
         let at = |k: usize| {

@@ -5,6 +5,7 @@ mod bonds;
 mod compare;
 mod flow;
 mod gradation;
+mod hazard;
 mod laws;
 mod loads;
 mod loops;
@@ -29,7 +30,7 @@ type Make = fn(&[RunData]) -> Option<Section>;
 
 /// Returns all sections with data; `axle_load` of a cycle [t].
 pub fn all(runs: &[RunData], axle_load: Option<f64>) -> Vec<Section> {
-    let sections: [Make; 26] = [
+    let sections: [Make; 27] = [
         verdict::verdict,
         compare::compare,
         picture::picture,
@@ -42,6 +43,7 @@ pub fn all(runs: &[RunData], axle_load: Option<f64>) -> Vec<Section> {
         walls::applied,
         walls::walls,
         loads::loads,
+        hazard::hazard,
         packing::packing,
         gradation::gradation,
         flow::flow,

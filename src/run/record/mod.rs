@@ -24,6 +24,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use trackbed_coupling::energy_balance::EnergyBalance;
 use trackbed_input::model::Job;
+use trackbed_input::model::grains::StructurePlan;
 use trackbed_io::failure::Failure;
 use trackbed_io::write::csv::{Column, History, Mark, Row};
 use trackbed_io::write::{self, WallFrame, WriteError, Writers};
@@ -61,6 +62,9 @@ struct Course {
     first_heights: Vec<f64>,
     #[serde(default)]
     loads: Vec<LoadRecord>,
+    /// Time and horizontal load by structure, if the scene has statistics.
+    #[serde(default)]
+    load_rows: Vec<Vec<[f64; 2]>>,
     #[serde(default)]
     largest_kinetic: f64,
     #[serde(default)]
@@ -203,6 +207,7 @@ impl<'a> Results<'a> {
         let values = columns::values(&now);
         self.history.row(&values)?;
         structures::follow(&self.columns, &values, &mut self.course.loads);
+        structures::follow_loads(&self.columns, &values, structures_of(self.job), &mut self.course.load_rows);
         Ok(())
     }
 
@@ -353,9 +358,9 @@ impl<'a> Results<'a> {
         Ok(specimen::record(plan, &self.course.specimen, view))
     }
 
-    /// Loads on structures.
-    pub fn loads(&self) -> &[LoadRecord] {
-        &self.course.loads
+    /// Loads on structures, with their statistics.
+    pub fn loads(&self) -> Vec<LoadRecord> {
+        structures::with_hazards(&self.course.loads, structures_of(self.job), &self.course.load_rows)
     }
 
     /// Completed load cycles.
@@ -371,8 +376,11 @@ fn stresses<S: System>(job: &Job, system: &S) -> Vec<Column> {
 }
 
 fn of_structures(job: &Job, columns: Vec<Column>) -> Vec<Column> {
-    let there = job.grains.as_ref().is_some_and(|part| !part.structures.is_empty());
-    if there { columns } else { Vec::new() }
+    if structures_of(job).is_empty() { Vec::new() } else { columns }
+}
+
+fn structures_of(job: &Job) -> &[StructurePlan] {
+    job.grains.as_ref().map_or(&[], |part| &part.structures)
 }
 
 impl Course {

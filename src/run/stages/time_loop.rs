@@ -326,7 +326,7 @@ impl<'a> TimeLoop<'a> {
             let events = events::record(dir, view.state.breaks(), part.events)?;
             summary.bonds = Some(BondSummary { events, ..bond_output::summary(view) });
         }
-        summary.structures = self.recorder.loads().to_vec();
+        summary.structures = self.recorder.loads();
         let done = self.place.done;
         let (grain_steps, solid_steps) = system.steps_done(done);
         let end = self.time(done);

@@ -1,6 +1,7 @@
 //! Parts of `summary.json`.
 
 use crate::events::EventRecord;
+use crate::hazard::HazardRecord;
 use crate::system::SolidView;
 use serde::{Deserialize, Serialize};
 use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
@@ -326,13 +327,20 @@ pub struct LoadRecord {
     pub time: f64,
     /// Mean horizontal load vector [N].
     pub mean: [f64; 2],
-    /// Largest load per sector [N].
+    /// Largest and mean load towards the axis per sector [N].
     pub sectors: Vec<f64>,
+    pub mean_sectors: Vec<f64>,
+    /// Largest and mean horizontal load per layer, from below [N].
+    pub layers: Vec<f64>,
+    pub mean_layers: Vec<f64>,
     /// Number of rows.
     pub rows: u64,
     /// Motion, if it moves. Always written: fields are unnamed.
     #[serde(default)]
     pub motion: Option<MotionRecord>,
+    /// Statistics at the end of the run, if the scene has them.
+    #[serde(default)]
+    pub hazard: Option<HazardRecord>,
 }
 
 /// Horizontal motion at history rows.

@@ -3,6 +3,7 @@
 use super::{CouplingRecord, Summary};
 use crate::events::EventRecord;
 use crate::flow::FlowRecord;
+use crate::hazard::HazardRecord;
 use crate::packing;
 use crate::runout::RunoutRecord;
 use crate::specimen::SpecimenRecord;
@@ -126,6 +127,8 @@ impl Summary {
                     m.rms_acceleration
                 ));
             }
+            let hazard = s.hazard.iter().flat_map(HazardRecord::text);
+            lines.extend(hazard.map(|text| format!("load on {}: {text}", s.name)));
         }
         if let Some(b) = &self.bonds {
             lines.push(format!(

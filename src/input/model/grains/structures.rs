@@ -1,5 +1,6 @@
 //! `[[structure]]` resolved.
 
+use super::hazard::{self, HazardPlan};
 use super::walls::WallsPart;
 use crate::scene::structure::Structure;
 use crate::scene::{Scene, SceneError, Table};
@@ -23,6 +24,8 @@ pub struct StructurePlan {
     pub sectors: usize,
     /// Layer boundaries [m], ascending.
     pub levels: Vec<f64>,
+    /// Statistics of the load.
+    pub hazard: Option<HazardPlan>,
 }
 
 impl StructurePlan {
@@ -78,6 +81,7 @@ fn plan(
         foot: [axis[0].si, axis[1].si, foot.map_or(0.0, |z| z.si)],
         sectors,
         levels,
+        hazard: structure.optional("hazard", &structure.hazard).map(|h| hazard::plan(&h)).transpose()?,
     };
     for part in parts {
         let before = plan.walls.len() + plan.groups.len();
