@@ -205,8 +205,8 @@ fn gumbel(values: &[f64]) -> Option<[f64; 2]> {
     Some([low - scale * libm::log(residual(scale).1 / n), scale])
 }
 
-/// Quantile of the normal law, by bisection of the error function.
-fn normal_quantile(p: f64) -> f64 {
+/// Quantile of the standard normal law, by bisection of the error function.
+pub fn normal_quantile(p: f64) -> f64 {
     let [mut low, mut high] = [-40.0_f64, 40.0];
     for _ in 0..100 {
         let middle = 0.5 * (low + high);

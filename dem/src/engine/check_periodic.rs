@@ -22,6 +22,24 @@ fn long_piece(input: &ModelInput, bodies: &Bodies) -> bool {
     })
 }
 
+/// Sentence about a wall that moves along a periodic axis beside spheres or clumps.
+fn moving_wall(input: &ModelInput, bodies: &Bodies) -> Option<String> {
+    if bodies.iter().all(|b| b.kind == BodyKind::Solid) {
+        return None;
+    }
+    input.all_walls().enumerate().find_map(|(k, wall)| {
+        let along = |d: usize| {
+            let servo = wall.servo.as_ref().map_or(0.0, |servo| servo.direction[d]);
+            wall.motion.velocity[d] != 0.0 || servo != 0.0 || wall.body.is_some()
+        };
+        let d = (0..3).find(|&d| input.periodic[d].is_some() && along(d))?;
+        let axis = ["x", "y", "z"][d];
+        Some(format!(
+            "wall {k} moves along {axis}, which is periodic; with spheres or clumps walls stay where they are along periodic axes"
+        ))
+    })
+}
+
 /// Half the length of a body along an axis [m]: of boxes that keep their direction their own, else the radius.
 fn reach(input: &ModelInput, k: usize, body: &Body, axis: usize) -> f64 {
     let shape = &input.shapes[body.shape];
@@ -63,19 +81,8 @@ pub(crate) fn check(
             return error(format!("{what} cannot be combined with them"));
         }
     }
-    if bodies.iter().any(|b| b.kind != BodyKind::Solid) {
-        for (k, wall) in input.all_walls().enumerate() {
-            let along = |d: usize| {
-                let servo = wall.servo.as_ref().map_or(0.0, |servo| servo.direction[d]);
-                wall.motion.velocity[d] != 0.0 || servo != 0.0 || wall.body.is_some()
-            };
-            if let Some(d) = (0..3).find(|&d| input.periodic[d].is_some() && along(d)) {
-                let axis = ["x", "y", "z"][d];
-                return error(format!(
-                    "wall {k} moves along {axis}, which is periodic; with spheres or clumps walls stay where they are along periodic axes"
-                ));
-            }
-        }
+    if let Some(problem) = moving_wall(input, bodies) {
+        return error(problem);
     }
     let largest = bodies.iter().map(|b| b.radius).fold(0.0, f64::max);
     for (d, (axis, side)) in ["x", "y", "z"].iter().zip(&input.periodic).enumerate() {
@@ -112,6 +119,12 @@ pub(crate) fn check(
             ));
         }
     }
+    waves_and_planes(input)
+}
+
+/// Waves that do not fit the box, planes across periodic axes.
+fn waves_and_planes(input: &ModelInput) -> Result<(), ModelError> {
+    let error = |problem: String| Err(ModelError::Periodic { problem });
     for wave in input.body_forces.iter().filter_map(BodyForce::wave) {
         for (d, [low, high]) in (0..2).filter_map(|d| Some((d, input.periodic[d]?))) {
             let crests = wave.number * wave.direction[d] * (high - low) / std::f64::consts::TAU;

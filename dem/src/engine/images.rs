@@ -2,7 +2,6 @@
 //!
 //! Patch p has the numbers n p to n p + n − 1 for its n images: contacts with several of them at once are distinct.
 
-use super::state::State;
 use crate::base::Vec3;
 use crate::pairs::patches::PatchList;
 use crate::spatial::periodic::{Periodic, Turns};
@@ -182,13 +181,5 @@ impl<S: Surface> Surface for Repeated<'_, S> {
 
     fn is_empty(&self) -> bool {
         self.surface.is_empty()
-    }
-}
-
-/// Moves the contacts of a block with walls and surface back with its bodies; `turns`: by sphere.
-pub(crate) fn wrap(images: &Images, periodic: &Periodic, state: &mut State, block: usize, turns: &[Turns]) {
-    let lists = &mut state.lists[block];
-    for list in [&mut lists.walls, &mut lists.surface] {
-        images.wrap(list, turns, |t| periodic.image_offset(t));
     }
 }

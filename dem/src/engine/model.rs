@@ -126,7 +126,6 @@ impl Model {
         check::shells(&walls, &shells, &laws)?;
         super::check_periodic::check(&input, &bodies, &patches, skin)?;
         let periodic = Periodic::new(&input.periodic);
-        let images = periodic.as_ref().map(Images::new);
         let bonds = crate::bond::resolve(&input.bond_kinds, &input.bonds, &input.bodies, &bodies)?;
         check::absent_bonds(&input)?;
         let expected = timestep::expected_overlap(&bodies, &input, &laws);
@@ -177,7 +176,7 @@ impl Model {
             patches,
             sheet: Sheet::new(input.surface_mesh.as_deref().filter(|_| faces)),
             periodic,
-            images,
+            images: periodic.as_ref().map(Images::new),
             bonds,
             radii,
             steps,

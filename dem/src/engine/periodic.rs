@@ -1,6 +1,5 @@
 //! Periodic wrapping of bodies (`spatial/periodic.rs`).
 
-use super::images;
 use super::model::Model;
 use super::state::State;
 use crate::base::Vec3;
@@ -35,7 +34,11 @@ pub(crate) fn wrap(periodic: &Periodic, model: &Model, state: &mut State) {
         return;
     }
     if let Some(images) = &model.images {
-        (0..state.blocks.len()).for_each(|b| images::wrap(images, periodic, state, b, &turns[b]));
+        for (lists, turns) in state.lists.iter_mut().zip(&turns) {
+            for list in [&mut lists.walls, &mut lists.surface] {
+                images.wrap(list, turns, |t| periodic.image_offset(t));
+            }
+        }
     }
     for b in 0..state.blocks.len() {
         let shift = |i: u32, block: u32, j: u32, before: &Turns| -> Turns {

@@ -10,6 +10,7 @@ use crate::scene::{Scene, SceneError, Table};
 use trackbed_dem::bond::Spread;
 use trackbed_dem::random::Random;
 use trackbed_dem::{Material, PairOverride};
+use trackbed_io::extremes::normal_quantile;
 
 /// Number of classes.
 const CLASSES: usize = 16;
@@ -108,15 +109,8 @@ fn quantile(spread: Spread, p: f64) -> f64 {
         Spread::Weibull { modulus } => libm::pow(-libm::log(1.0 - p), 1.0 / modulus),
         Spread::Normal { deviation } => {
             // Cut off at zero.
-            let below = |z: f64| 0.5 * libm::erfc(-z * std::f64::consts::FRAC_1_SQRT_2);
-            let cut = below(-1.0 / deviation);
-            let sought = cut + p * (1.0 - cut);
-            let (mut low, mut high) = ((-1.0 / deviation).max(-40.0), 40.0);
-            for _ in 0..100 {
-                let z = 0.5 * (low + high);
-                if below(z) < sought { low = z } else { high = z }
-            }
-            1.0 + deviation * 0.5 * (low + high)
+            let cut = 0.5 * libm::erfc(std::f64::consts::FRAC_1_SQRT_2 / deviation);
+            1.0 + deviation * normal_quantile(cut + p * (1.0 - cut))
         }
     }
 }
