@@ -37,6 +37,7 @@ mod suite {
     mod mumps;
     mod observe;
     mod packings;
+    mod periodic;
     mod plausible;
     mod polyhedra;
     mod preview;

@@ -57,6 +57,17 @@ pub fn events(times: &[f64], values: &[f64], level: f64, separation: f64) -> Vec
     events
 }
 
+/// Returns the events without those that the ends of the history cut off: their peaks are not known.
+pub fn whole(mut events: Vec<Event>, values: &[f64], level: f64) -> Vec<Event> {
+    if values.last().is_some_and(|x| *x > level) {
+        events.pop();
+    }
+    if values.first().is_some_and(|x| *x > level) && !events.is_empty() {
+        events.remove(0);
+    }
+    events
+}
+
 /// Law of extreme values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -125,3 +125,15 @@ fn rejects_small_or_equal_samples() {
     assert_eq!(Fit::of(Law::Gumbel, 0.0, &[3.0; 6]), None);
     assert_eq!(Fit::of(Law::Weibull, 77.0, &LOADS), None);
 }
+
+/// Events that the ends of the history cut off have no known peak.
+#[test]
+fn events_at_the_ends_are_not_whole() {
+    let times: Vec<f64> = (0..9).map(f64::from).collect();
+    let values = [3.0, 1.0, 0.0, 4.0, 0.0, 5.0, 0.0, 2.0, 6.0];
+    let all = events(&times, &values, 1.5, 0.0);
+    let peaks = |events: &[Event]| events.iter().map(|e| e.peak).collect::<Vec<_>>();
+    assert_eq!(peaks(&all), [3.0, 4.0, 5.0, 6.0]);
+    assert_eq!(peaks(&whole(all, &values, 1.5)), [4.0, 5.0]);
+    assert!(whole(events(&times[..2], &[2.0, 2.0], 1.5, 0.0), &[2.0, 2.0], 1.5).is_empty());
+}

@@ -26,6 +26,8 @@ pub struct HazardRecord {
     pub confidence: f64,
     /// Loads exceeded once per return period on average.
     pub return_loads: Vec<ReturnLoad>,
+    /// Number of return periods with less than one peak on average, which have no load.
+    pub short_periods: usize,
     /// Load of level ice [N], and the largest load over it.
     pub level_ice: Option<f64>,
     pub over_level_ice: Option<f64>,
@@ -87,7 +89,8 @@ pub fn record(plan: &HazardPlan, rows: &[[f64; 2]]) -> HazardRecord {
         fraction_of_time: extremes::fraction_above(&times, &loads, load),
         events: events(load).len(),
     });
-    let peaks: Vec<[f64; 2]> = events(plan.threshold).iter().map(|e| [e.time, e.peak]).collect();
+    let whole = extremes::whole(events(plan.threshold), &loads, plan.threshold);
+    let peaks: Vec<[f64; 2]> = whole.iter().map(|e| [e.time, e.peak]).collect();
     let values: Vec<f64> = peaks.iter().map(|[_, load]| *load).collect();
     let fit = Fit::of(plan.law, plan.threshold, &values);
     let per_year = peaks.len() as f64 / duration.max(f64::MIN_POSITIVE) * plan.exposure;
@@ -97,6 +100,8 @@ pub fn record(plan: &HazardPlan, rows: &[[f64; 2]]) -> HazardRecord {
         let fit = fit.as_ref().filter(|_| exceedance < 1.0)?;
         Some(ReturnLoad { period: *period, load: fit.quantile(exceedance, plan.confidence) })
     };
+    let return_loads: Vec<ReturnLoad> = plan.return_periods.iter().filter_map(return_load).collect();
+    let short_periods = if fit.is_some() { plan.return_periods.len() - return_loads.len() } else { 0 };
     let above = |level: Option<f64>| level.is_some_and(|level| largest > level);
     let warning = match () {
         () if amber.or(red).is_none() => None,
@@ -111,7 +116,8 @@ pub fn record(plan: &HazardPlan, rows: &[[f64; 2]]) -> HazardRecord {
         duration,
         exceedance: exceedance.collect(),
         threshold: plan.threshold,
-        return_loads: plan.return_periods.iter().filter_map(return_load).collect(),
+        return_loads,
+        short_periods,
         peaks,
         fit,
         confidence: plan.confidence,
@@ -135,7 +141,8 @@ impl HazardRecord {
                 e.events
             ));
         }
-        let peaks = format!("{} peaks above {:.3e} N", self.peaks.len(), self.threshold);
+        let plural = if self.peaks.len() == 1 { "" } else { "s" };
+        let peaks = format!("{} peak{plural} above {:.3e} N", self.peaks.len(), self.threshold);
         lines.push(match &self.fit {
             None => format!("{peaks}, no fit (at least {} different peaks)", extremes::FEWEST),
             Some(Fit { law: Law::Gumbel, location, scale, .. }) => {
@@ -145,6 +152,9 @@ impl HazardRecord {
                 format!("{peaks}, Weibull law of the excess with scale {scale:.3e} N, shape {shape:.3}")
             }
         });
+        if self.short_periods > 0 {
+            lines.push(format!("{} return periods with less than one peak: no load", self.short_periods));
+        }
         for r in &self.return_loads {
             lines.push(format!(
                 "{}-year load {:.3e} N ({:.3e} to {:.3e} N, {} % confidence)",

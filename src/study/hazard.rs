@@ -21,6 +21,8 @@ pub struct Hazard {
     pub quantile: f64,
     /// Energies whose exceedance is mapped [J].
     pub energies: Vec<f64>,
+    /// Number of sampled parameters, whose samples share a map.
+    pub sampled: usize,
 }
 
 /// Maps of a case.
@@ -48,7 +50,11 @@ pub struct CaseMaps {
 ///
 /// # Errors
 /// Values out of range.
-pub fn resolve(document: &Document, table: Option<&HazardTable>) -> Result<Option<Hazard>, SceneError> {
+pub fn resolve(
+    document: &Document,
+    table: Option<&HazardTable>,
+    sampled: usize,
+) -> Result<Option<Hazard>, SceneError> {
     let Some(table) = table else { return Ok(None) };
     let quantile = table.quantile.unwrap_or(QUANTILE);
     if !(0.5..1.0).contains(&quantile) {
@@ -60,7 +66,7 @@ pub fn resolve(document: &Document, table: Option<&HazardTable>) -> Result<Optio
         let expected = "energies above 0 J, ascending";
         return Err(document.error("hazard.energies", format!("{energies:?}"), expected));
     }
-    Ok(Some(Hazard { quantile, energies }))
+    Ok(Some(Hazard { quantile, energies, sampled }))
 }
 
 /// Returns the table of all cases.

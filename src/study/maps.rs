@@ -79,20 +79,38 @@ pub fn write(
         std::fs::remove_dir_all(&dir).map_err(|e| Failure::Other(format!("{}: {e}", dir.display())))?;
     }
     std::fs::create_dir_all(&dir).map_err(|e| Failure::Other(format!("{}: {e}", dir.display())))?;
-    let files = file_names(outcome.rows.iter().map(|row| row.case.as_str()));
+    let groups = groups(outcome, hazard.sampled);
+    let files = file_names(groups.iter().map(|(case, _)| case.as_str()));
     let mut maps = Vec::new();
-    for (k, (row, files)) in outcome.rows.iter().zip(files).enumerate() {
+    for ((case, rows), files) in groups.iter().zip(files) {
         let mut cells: Option<Cells> = None;
-        for (run, found) in plan.runs.iter().zip(found).filter(|(run, _)| run.setting == k) {
+        for (run, found) in plan.runs.iter().zip(found).filter(|(run, _)| rows.contains(&run.setting)) {
             if let Found::Done(_, summary) = found {
-                add(&mut cells, &store.results(run), &summary["runout"]["cell"])?;
+                add(&mut cells, &store.results(run), &summary["runout"]["passage_cell"])?;
             }
         }
         if let Some(cells) = cells.filter(|cells| !cells.cells.is_empty()) {
-            maps.push(case_maps(hazard, &dir, (row.case.clone(), files), &cells)?);
+            maps.push(case_maps(hazard, &dir, (case.clone(), files), &cells)?);
         }
     }
     Ok(maps)
+}
+
+/// Cases with the numbers of their rows; samples are releases of one case.
+fn groups(outcome: &Outcome, sampled: usize) -> Vec<(String, Vec<usize>)> {
+    let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
+    for (k, row) in outcome.rows.iter().enumerate() {
+        let case = match sampled {
+            0 => row.case.clone(),
+            _ if row.levels.len() <= sampled => "all samples".to_string(),
+            _ => row.levels[sampled..].join(", "),
+        };
+        match groups.iter_mut().find(|(known, _)| *known == case) {
+            Some((_, rows)) => rows.push(k),
+            None => groups.push((case, vec![k])),
+        }
+    }
+    groups
 }
 
 fn add(cells: &mut Option<Cells>, results: &Path, side: &serde_json::Value) -> Result<(), Failure> {

@@ -152,6 +152,9 @@ fn prepare(
             if needed {
                 checked = Some(run.setting);
                 check(&plan.scene, &run.set)?;
+                if plan.hazard.is_some() {
+                    records_passage(&scene, &run.set)?;
+                }
             }
             Ok(hash)
         });
@@ -162,6 +165,17 @@ fn prepare(
         }
     }
     if refused.is_empty() { Ok(hashes) } else { Err(refusal(document, &refused)) }
+}
+
+/// Refuses a scene without the cells that maps need.
+fn records_passage(scene: &Document, set: &[String]) -> Result<(), Failure> {
+    let mut document = scene.clone();
+    document.set_all(set)?;
+    if read_scene(&document)?.runout.is_some_and(|runout| runout.passage) {
+        return Ok(());
+    }
+    let expected = "`passage = true`, from which [hazard] of the study makes its maps";
+    Err(document.error("runout.passage", "nothing", expected).into())
 }
 
 /// A common error is stated once.

@@ -109,7 +109,7 @@ impl Plan {
         let seeds = file.seeds.as_ref().map_or(1, |seeds| seeds.values.len());
         let extremes = extreme::resolve(document, &file.extreme, &quantities, seeds)?;
         let jobs = file.jobs;
-        let hazard = hazard::resolve(document, file.hazard.as_ref())?;
+        let hazard = hazard::resolve(document, file.hazard.as_ref(), file.parameter.len())?;
         Ok(Plan {
             title,
             scene,

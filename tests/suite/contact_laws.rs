@@ -263,3 +263,15 @@ fn stiffness_spreads_over_grains() {
         assert!(said.code == 2 && said.stderr.contains(expected), "{}", said.stderr);
     }
 }
+
+#[test]
+fn spread_of_replaced_stiffness_is_refused() {
+    let scene = repository().join("inputs/grains/stiffness_spread.toml").display().to_string();
+    let pair = |other: &str| format!("{{ between = [\"rubber\", \"{other}\"], stiffness = 4000.0 }}");
+    let all = format!("contact=[{}, {}]", pair("rubber"), pair("plate"));
+    let linear =
+        ["material.rubber.young=", "material.rubber.poisson=", "material.rubber.stiffness=2000.0", &all];
+    let words = ["check", &scene].into_iter().chain(linear.iter().flat_map(|set| ["--set", set]));
+    let said = trackbed(words);
+    assert!(said.code == 2 && said.stderr.contains("material.0.stiffness_spread"), "{}", said.stderr);
+}

@@ -4,6 +4,7 @@ use super::support::{Folder, Table, json, repository, run, trackbed};
 use std::f64::consts::PI;
 use std::fmt::Write;
 use std::fs;
+use std::path::Path;
 
 const DIP: f64 = 30.0;
 
@@ -241,6 +242,38 @@ fn passed_cells_hold_the_energy_of_the_fall() {
     super::checkpoint::broken(&scene, &set, &[0.3, 0.7], &["passage.csv"]);
 }
 
+/// Cells keep the side of the scene where the grid of the deposit has too many.
+#[test]
+fn passed_cells_keep_their_side() {
+    let scene = "title = \"far\"\n[[material]]\nname = \"rock\"\ndensity = 2600\nstiffness = \"1 MN/m\"\nfriction = 0.5\nrestitution = 0.3\n\
+                 [[grains]]\nname = \"rocks\"\nshape = \"sphere\"\nmaterial = \"rock\"\n\
+                 spheres = [[0.5, 0.5, 0.5, 0.5], [5000.5, 0.5, 0.5, 0.5]]\n\
+                 [[walls]]\nkind = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\nmaterial = \"rock\"\n\
+                 [runout]\ndirection = [1, 0]\ncell = 1\npassage = true\n[time]\nend = \"10 ms\"\n[output]\nvtk = false\n";
+    let folder = super::support::scene_folder("far", scene);
+    run(&folder.join("scene.toml"), &folder.join("out"), &[]).good();
+    let x = Table::read(&folder.join("out/passage.csv")).column("x");
+    assert!(x.contains(&0.5) && x.contains(&5000.5), "{x:?}");
+    let runout = &json(&folder.join("out/summary.json"))["runout"];
+    assert!(runout["passage_cell"] == 1.0 && runout["cell"].as_f64().unwrap() > 1.0, "{runout}");
+}
+
+/// Values of an ESRI grid by position.
+fn grid(maps: &Path, name: &str) -> impl Fn(f64, f64) -> f64 {
+    let mut files = fs::read_dir(maps).unwrap().map(|e| e.unwrap().path());
+    let file = files.find(|f| f.display().to_string().ends_with(&format!("_{name}.asc"))).unwrap();
+    let text = fs::read_to_string(file).unwrap();
+    let head: Vec<f64> =
+        text.lines().take(6).map(|l| l.split_whitespace().nth(1).unwrap().parse().unwrap()).collect();
+    let rows: Vec<Vec<f64>> =
+        text.lines().skip(6).map(|l| l.split(' ').map(|v| v.parse().unwrap()).collect()).collect();
+    assert_eq!([rows[0].len() as f64, rows.len() as f64], [head[0], head[1]]);
+    move |x: f64, y: f64| {
+        let (i, j) = ((x - head[2]) / head[4], (y - head[3]) / head[4]);
+        rows[rows.len() - 1 - j as usize][i as usize]
+    }
+}
+
 /// Maps of three releases against their own tables.
 #[test]
 fn hazard_maps_count_releases() {
@@ -257,21 +290,7 @@ fn hazard_maps_count_releases() {
         ["study", &file.display().to_string(), "--out", &out.display().to_string(), "--threads", "1"];
     let said = trackbed(arguments).good().stdout;
     assert!(said.contains("60 % energy [kJ]") && said.contains("95 % confidence"), "{said}");
-    let grid = |name: &str| {
-        let entry = fs::read_dir(out.join("maps")).unwrap().map(|e| e.unwrap().path());
-        let file =
-            entry.into_iter().find(|f| f.display().to_string().ends_with(&format!("_{name}.asc"))).unwrap();
-        let text = fs::read_to_string(file).unwrap();
-        let head: Vec<f64> =
-            text.lines().take(6).map(|l| l.split_whitespace().nth(1).unwrap().parse().unwrap()).collect();
-        let rows: Vec<Vec<f64>> =
-            text.lines().skip(6).map(|l| l.split(' ').map(|v| v.parse().unwrap()).collect()).collect();
-        assert_eq!([rows[0].len() as f64, rows.len() as f64], [head[0], head[1]]);
-        move |x: f64, y: f64| {
-            let (i, j) = ((x - head[2]) / head[4], (y - head[3]) / head[4]);
-            rows[rows.len() - 1 - j as usize][i as usize]
-        }
-    };
+    let grid = |name: &str| grid(&out.join("maps"), name);
     let runs: Vec<Table> = fs::read_dir(out.join("runs"))
         .unwrap()
         .map(|e| e.unwrap().path().join("passage.csv"))
@@ -292,6 +311,24 @@ fn hazard_maps_count_releases() {
         // The second of three is not exceeded in 60 % of the runs.
         assert_eq!(energy(x, y), energies[1].max(0.0));
     }
+    // Samples of parameters are releases of one case.
+    let sampled = study.replace(
+        "[seeds]\nvalues = [1, 2, 3]\n",
+        "[sampling]\nmethod = \"sobol\"\nsamples = 4\n[[parameter]]\nkey = \"material.rock.restitution\"\nrange = [0.2, 0.5]\n",
+    );
+    let file = folder.write("sampled.toml", &sampled);
+    let out = folder.join("sampled");
+    trackbed(["study", &file.display().to_string(), "--out", &out.display().to_string()]).good();
+    let maps = &json(&out.join("study.json"))["analysis"]["hazard"];
+    assert!(maps.as_array().unwrap().len() == 1 && maps[0]["runs"] == 4, "{maps}");
+    assert!(out.join("maps/all-samples_reach.asc").exists());
+    let file = folder.write(
+        "without.toml",
+        &study.replace("[\"time.end=6\"", "[\"runout.passage=false\", \"time.end=6\""),
+    );
+    let out = folder.join("without");
+    let said = trackbed(["study", &file.display().to_string(), "--out", &out.display().to_string()]);
+    assert!(said.code == 2 && said.stderr.contains("runout.passage") && !out.exists(), "{}", said.stderr);
     for (key, line) in [
         ("energies = [1e5]", "energies = [2, 1]"),
         ("quantile = 0.6", "quantile = 0.2"),

@@ -1,11 +1,11 @@
 //! Checks of periodic axes.
 
 use super::input::ModelInput;
+use super::pieces::components;
 use crate::base::Vec3;
 use crate::base::error::ModelError;
 use crate::bodies::table::{Bodies, Body, BodyKind};
 use crate::body_force::BodyForce;
-use crate::measure::components;
 use crate::spatial::patchwork::Patch;
 
 /// Whether bodies that bonds join extend over a whole period.
@@ -70,16 +70,11 @@ pub(crate) fn check(
         return Ok(());
     }
     let dilated = bodies.iter().any(|b| b.kind == BodyKind::Solid && input.shapes[b.shape].dilated());
-    for (what, there) in [
-        ("polyhedra or disks on an external surface", dilated && input.surface_material.is_some()),
-        (
-            "bonds that join a piece longer than a period",
-            !input.bonds.is_empty() && long_piece(input, bodies),
-        ),
-    ] {
-        if there {
-            return error(format!("{what} cannot be combined with them"));
-        }
+    if dilated && input.surface_material.is_some() {
+        return error("polyhedra or disks on an external surface cannot be combined with them".into());
+    }
+    if !input.bonds.is_empty() && long_piece(input, bodies) {
+        return error("a piece longer than a period, joined by bonds".into());
     }
     if let Some(problem) = moving_wall(input, bodies) {
         return error(problem);

@@ -17,6 +17,7 @@ pub mod input;
 pub mod model;
 pub(crate) mod neighbour_list;
 pub(crate) mod periodic;
+pub(crate) mod pieces;
 pub(crate) mod reordering;
 pub(crate) mod scarring;
 pub(crate) mod start;

@@ -1,10 +1,10 @@
 //! Periodic wrapping of bodies (`spatial/periodic.rs`).
 
 use super::model::Model;
+use super::pieces::components;
 use super::state::State;
 use crate::base::Vec3;
 use crate::lanes::vec4::{set_xyz, xyz};
-use crate::measure::components;
 use crate::pairs::cross::{ImageName, ImagePair};
 use crate::spatial::periodic::{NONE, Periodic, Turns};
 

@@ -109,7 +109,7 @@ pub fn breakage(model: &Model, state: &State) -> Option<Breakage> {
     let mut whole = Vec::new();
     state.each_bond(|number, _| whole.push(model.bonds[number as usize].ends));
     let pieces = |bonds: Vec<[u32; 2]>| -> Vec<Piece> {
-        let of = super::fragments::components(model.body_count(), bonds);
+        let of = crate::engine::pieces::components(model.body_count(), bonds);
         let mut groups: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         bonded.iter().for_each(|&b| groups.entry(of[b as usize]).or_default().push(b));
         groups.values().map(|bodies| piece(model, starts, bodies)).collect()

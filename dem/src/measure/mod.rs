@@ -30,7 +30,6 @@ pub use energy::{Energies, energies, momentum, reference_energy};
 pub(crate) use energy::{energies_of, momentum_of};
 pub use extent::{highest_over, lowest};
 pub use force_on::{force_on, loads_on};
-pub(crate) use fragments::components;
 pub use fragments::{Fragments, fragments};
 pub use memory_size::{bytes, kernels};
 pub use porosity::{COLUMNS, body_volume_in, porosity, solid_volume};

@@ -92,6 +92,9 @@ impl Job {
             }
             (None, _, _) => None,
         };
+        if let (Some(c), Some(s), Some(g)) = (&coupling, &solid, &grains) {
+            c.check_periodic(scene, s, g)?;
+        }
         if let (Some(c), Some(g)) = (&coupling, &mut grains) {
             g.set_sleeper_faces(c.ground_faces as u32);
             if let Some(s) = solid.as_ref().filter(|_| g.groups.polyhedra()) {

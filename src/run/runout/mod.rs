@@ -151,6 +151,7 @@ pub fn record(
         centre_start: centres[0].into(),
         centre_end: centres[1].into(),
         cell: map.plan.cell,
+        passage_cell: passage.map(Passage::side),
         deposit_area: cells as f64 * area,
         deposit_length: map.extent(plan.direction),
         deposit_width: map.extent(across),

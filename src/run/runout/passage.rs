@@ -18,6 +18,8 @@ const POSITIONS: f64 = 4.0;
 /// Passed cells by column and row: corner of cell (i, j) at (i, j) times the cell size.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Passage {
+    /// Side of the cells [m].
+    side: f64,
     cells: BTreeMap<[i32; 2], Passed>,
     /// Last position of each body.
     before: Vec<Option<[f64; 2]>>,
@@ -55,6 +57,7 @@ fn cell_of(x: [f64; 2], cell: f64) -> [i32; 2] {
 impl Passage {
     /// Follows all grains since the last call.
     pub fn follow(&mut self, view: GrainsView<'_>, plan: &RunoutPlan, cell: f64) {
+        self.side = cell;
         self.before.resize(view.model.body_count(), None);
         for body in slide(view, plan) {
             let x = view.state.position(body);
@@ -79,6 +82,11 @@ impl Passage {
         }
     }
 
+    /// Returns the side of the cells [m].
+    pub fn side(&self) -> f64 {
+        self.side
+    }
+
     /// Writes `passage.csv`: all cells that were passed or hold a deposit.
     ///
     /// # Errors
@@ -90,7 +98,7 @@ impl Passage {
         part: &GrainsPart,
         deposit: &Deposit,
     ) -> Result<(), Failure> {
-        let cell = deposit.plan.cell;
+        let cell = self.side;
         let mut cells: BTreeMap<[i32; 2], (Passed, f64)> =
             self.cells.iter().map(|(at, passed)| (*at, (*passed, 0.0))).collect();
         for (i, j) in deposit.cells() {

@@ -35,6 +35,9 @@ pub struct RunoutRecord {
     pub centre_end: [f64; 3],
     /// Cell size of the depth map [m].
     pub cell: f64,
+    /// Side of the cells of `passage.csv` [m].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub passage_cell: Option<f64>,
     /// Deposit area in plan [m²].
     pub deposit_area: f64,
     /// Deposit length along the slide [m].

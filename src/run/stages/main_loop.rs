@@ -36,7 +36,7 @@ impl Stage for MainLoop {
 
     fn report(&self, job: &Job, steps: Steps<'_>) -> Vec<String> {
         if let Some(grains) = &job.grains {
-            let mut lines = vec![format!("run: {} s, {}", job.end, steps(job.end))];
+            let mut lines = vec![format!("run: {} s, {}", (1e9 * job.end).round() / 1e9, steps(job.end))];
             let waiting = |part| grains.groups.bodies.iter().filter(|b| b.absent && b.part == part).count();
             lines.extend(grains.flow.iter().flat_map(|f| f.lines(&grains.groups.names, waiting)));
             return lines;

@@ -9,7 +9,7 @@ pub use table::build;
 
 use super::grains::GrainsPart;
 use super::solid::SolidPart;
-use crate::scene::{Document, SceneError};
+use crate::scene::{Document, Scene, SceneError, Table};
 use trackbed_coupling::interface_stability::InterfaceStabilityNumbers;
 use trackbed_coupling::scheme::Scheme;
 use trackbed_coupling::stability::{
@@ -85,6 +85,32 @@ impl CouplingPart {
     pub fn ground(&self, solid: &SolidPart, grains: &GrainsPart) -> SolidSurface {
         let faces = self.faces[..self.ground_faces].to_vec();
         self.spread(SolidSurface::new(solid.model.mesh(), faces), grains)
+    }
+
+    /// Checks that the ground surface fills the box along periodic axes.
+    ///
+    /// # Errors
+    /// A narrower or wider surface.
+    pub fn check_periodic(
+        &self,
+        scene: &Table<Scene>,
+        solid: &SolidPart,
+        grains: &GrainsPart,
+    ) -> Result<(), SceneError> {
+        let mesh = solid.model.mesh();
+        for (d, borders) in grains.periodic.iter().enumerate() {
+            let Some([low, high]) = *borders else { continue };
+            let nodes = self.faces[..self.ground_faces].iter().flat_map(|face| face.nodes());
+            let along = nodes.map(|n| mesh.coordinates[*n as usize][d]);
+            let [from, to] = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
+            let slack = 1e-6 * (high - low);
+            if (from - low).abs() > slack || (to - high).abs() > slack {
+                let expected = format!("the ends of the contact surface of the solid, [{from}, {to}]");
+                let key = format!("periodic.{}", ["x", "y", "z"][d]);
+                return Err(scene.error(&key, format!("[{low}, {high}]"), expected));
+            }
+        }
+        Ok(())
     }
 
     /// Returns the ground surface as flat triangles, for polyhedra.

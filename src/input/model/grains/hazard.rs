@@ -51,6 +51,9 @@ pub(super) fn plan(hazard: &Table<Hazard>) -> Result<HazardPlan, SceneError> {
         let expected = "at most 100 periods above 0";
         return Err(hazard.error("return_periods", format!("{return_periods:?}"), expected));
     }
+    if hazard.return_periods.is_none() {
+        hazard.reject_without([("confidence", hazard.confidence.is_some())], "`return_periods`")?;
+    }
     match (&hazard.exposure, &hazard.return_periods) {
         (Some(_), None) => return Err(hazard.requirement("exposure", "`return_periods`")),
         (None, Some(_)) => return Err(hazard.requirement("return_periods", "`exposure`")),

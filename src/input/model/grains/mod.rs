@@ -93,6 +93,7 @@ pub fn build(scene: &Table<Scene>, gravity: [f64; 3]) -> Result<GrainsPart, Fail
         (true, false) => None,
     };
     let track = track::build(scene, &gravity, fixed, steps.mass_factor, &mut groups)?;
+    periodic::check_sleepers(scene, &track, &periodic)?;
     Ok(GrainsPart {
         materials,
         groups,

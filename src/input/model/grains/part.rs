@@ -15,6 +15,7 @@ use super::structures::StructurePlan;
 use super::track::{SleeperPlan, TrackPart};
 use super::walls::WallsPart;
 use std::sync::Arc;
+use trackbed_dem::law::conical_damage;
 use trackbed_dem::sheet::SurfaceMesh;
 use trackbed_dem::{BodyForce, BodyInput, LocalDamping, Material, Model, ModelInput, Names, TimeStep, Vec3};
 
@@ -85,6 +86,14 @@ fn soften(input: &mut ModelInput, factor: f64) {
         material.young = material.young.map(|young| young * factor);
         // Corners crush at true forces, proportional to strength³/modulus².
         material.corner_strength *= libm::cbrt(factor * factor);
+        // Crushing must dissipate energy.
+        if let Some(young) = material.young.filter(|_| material.corner_strength.is_finite()) {
+            let modulus = 0.5 * young / (1.0 - material.poisson * material.poisson);
+            let greatest = conical_damage::greatest_strength(modulus, material.corner_angle);
+            if material.corner_strength >= greatest {
+                material.corner_strength = 0.99 * greatest;
+            }
+        }
     }
     for pair in &mut input.contacts {
         pair.stiffness = pair.stiffness.map(|stiffness| stiffness * factor);
@@ -246,12 +255,23 @@ mod tests {
     /// Crushing force π³ σ³ R²/(6 E*²) (Hertz); softening must preserve it.
     #[test]
     fn softening_preserves_crushing_force() {
-        let granite = Material { young: Some(50e9), corner_strength: 800e6, ..Material::RIGID };
+        let granite =
+            Material { young: Some(50e9), corner_strength: 800e6, corner_angle: 1.0, ..Material::RIGID };
         let mut input = ModelInput { materials: vec![granite], ..ModelInput::default() };
         soften(&mut input, 0.02);
         let force = |m: &Material| m.corner_strength.powi(3) / m.young.expect("a modulus").powi(2);
         let soft = &input.materials[0];
         assert_eq!(soft.young, Some(1e9));
         assert!((force(soft) / force(&granite) - 1.0).abs() < 1e-12, "{soft:?}");
+        // A strength close to the limit of dissipation stays below it.
+        let mut brittle = ModelInput { materials: vec![granite], ..ModelInput::default() };
+        brittle.materials[0].corner_angle = 1.4;
+        soften(&mut brittle, 0.001);
+        let greatest = conical_damage::greatest_strength(0.5 * 50e6, 1.4);
+        assert!(
+            brittle.materials[0].corner_strength < greatest,
+            "{} of {greatest}",
+            brittle.materials[0].corner_strength
+        );
     }
 }

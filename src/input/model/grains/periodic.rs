@@ -1,6 +1,7 @@
 //! `[periodic]` resolved.
 
 use super::groups::GroupsPart;
+use super::track::TrackPart;
 use crate::scene::{Scene, SceneError, Table};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -39,4 +40,28 @@ pub(super) fn build(scene: &Table<Scene>, groups: &GroupsPart) -> Result<Borders
         }
     }
     Ok(borders)
+}
+
+/// Sleepers lie between the borders, clear of their images.
+pub(super) fn check_sleepers(
+    scene: &Table<Scene>,
+    track: &TrackPart,
+    borders: &Borders,
+) -> Result<(), SceneError> {
+    let Some(row) = track.sleeper.as_ref().map(|plan| &plan.row) else { return Ok(()) };
+    for d in 0..2 {
+        let Some([low, high]) = borders[d] else { continue };
+        let along = row.centres.iter().map(|x| x[d]);
+        let [from, to] = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
+        let length = to - from + 2.0 * row.half[d];
+        if from < low || to > high || length >= high - low {
+            let found = format!("sleepers from {} to {} m", from - row.half[d], to + row.half[d]);
+            let expected = format!(
+                "centres between the borders {low} and {high} of `periodic.{}`, and a row shorter than the period",
+                AXES[d]
+            );
+            return Err(scene.error("track.sleeper", found, expected));
+        }
+    }
+    Ok(())
 }

@@ -32,6 +32,14 @@ pub(super) fn spread(
         if material.young.is_none() && material.stiffness.is_infinite() {
             return Err(row.no_effect("stiffness_spread", "`young` or `stiffness`"));
         }
+        let replaced = |other: usize| {
+            let of =
+                |pair: &PairOverride| [pair.a, pair.b] == [base, other] || [pair.b, pair.a] == [base, other];
+            materials.pairs.iter().any(|pair| of(pair) && pair.stiffness.is_some())
+        };
+        if material.young.is_none() && (0..scene.material.len()).all(replaced) {
+            return Err(row.conflict("stiffness_spread", "`stiffness` of all [[contact]]"));
+        }
         let spread = law(&table, table.kind, table.deviation, table.modulus)?;
         if !materials.of_grains.contains(&base) {
             return Err(row.no_effect("stiffness_spread", "[[grains]] of this material"));
