@@ -259,7 +259,7 @@ fn passed_cells_keep_their_side() {
 }
 
 /// Values of an ESRI grid by position.
-fn grid(maps: &Path, name: &str) -> impl Fn(f64, f64) -> f64 {
+fn grid(maps: &Path, name: &str) -> impl Fn(f64, f64) -> f64 + use<> {
     let mut files = fs::read_dir(maps).unwrap().map(|e| e.unwrap().path());
     let file = files.find(|f| f.display().to_string().ends_with(&format!("_{name}.asc"))).unwrap();
     let text = fs::read_to_string(file).unwrap();
