@@ -51,13 +51,13 @@ pub(super) fn plan(hazard: &Table<Hazard>) -> Result<HazardPlan, SceneError> {
         let expected = "at most 100 periods above 0";
         return Err(hazard.error("return_periods", format!("{return_periods:?}"), expected));
     }
-    if hazard.return_periods.is_none() {
-        hazard.reject_without([("confidence", hazard.confidence.is_some())], "`return_periods`")?;
-    }
     match (&hazard.exposure, &hazard.return_periods) {
         (Some(_), None) => return Err(hazard.requirement("exposure", "`return_periods`")),
         (None, Some(_)) => return Err(hazard.requirement("return_periods", "`exposure`")),
         _ => {}
+    }
+    if hazard.return_periods.is_none() {
+        hazard.reject_without([("confidence", hazard.confidence.is_some())], "`return_periods`")?;
     }
     let exposure = hazard.check("exposure", hazard.exposure, |t| t > 0.0, "a time above 0")?;
     let amber = hazard.check("amber", hazard.amber, |f| f > 0.0, positive)?.map(|f| f.si);
