@@ -211,11 +211,8 @@ fn balances_close() {
         ..bed(5, 3)
     };
     flow.bodies.iter_mut().for_each(|b| b.velocity += Vec3::new(2.0, 0.6, 0.0));
-    let mut hills = ModelInput {
-        gravity: flow.gravity,
-        time_step: flow.time_step.clone(),
-        ..hilly(5, 3, &Vec3::zeros())
-    };
+    let mut hills =
+        ModelInput { gravity: flow.gravity, time_step: flow.time_step, ..hilly(5, 3, &Vec3::zeros()) };
     hills.bodies.iter_mut().for_each(|b| b.velocity += Vec3::new(2.0, 0.6, 0.0));
     for (input, free) in [(input, true), (flow, false), (hills, false)] {
         let mut run = Run::new(input);
