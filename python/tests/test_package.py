@@ -284,7 +284,7 @@ def test_a_study_of_a_scene(falling, tmp_path):
     with pytest.raises(ValueError, match="heights.scene.toml: found a file"):
         trackbed.study(tables, tmp_path / "new" / "heights")
     again = trackbed.study({**tables, "scene": falling}, tmp_path / "new" / "heights", jobs=1, threads=1, force=True)
-    assert again == rows
+    assert [row["gravity [J]"] for row in again] == [row["gravity [J]"] for row in rows]
     with pytest.raises(ValueError, match="scene: found None"):
         trackbed.study({"axis": axis}, tmp_path / "none")
 
