@@ -137,7 +137,7 @@ fn around<'a>(cells: impl Iterator<Item = &'a [i32; 2]>, cell: f64) -> Plan {
 mod tests {
     use super::*;
 
-    /// A fast grain misses no cell between two rows, and enters each once.
+    /// A fast grain misses no cell between two rows, and enters each once; its energy at the end of the way counts on all of it.
     #[test]
     fn all_cells_along_the_way_are_passed() {
         let mut passage = Passage { before: vec![None], ..Passage::default() };
@@ -146,7 +146,7 @@ mod tests {
         }
         let found: Vec<_> = passage.cells.iter().map(|(at, p)| (*at, p.entries, p.energy)).collect();
         let expected = [
-            ([0, -1], 1, 0.0),
+            ([0, -1], 1, 10.0),
             ([1, -1], 1, 10.0),
             ([2, -1], 1, 10.0),
             ([3, -1], 2, 10.0),
