@@ -82,13 +82,14 @@ fn solid_step(bencher: Bencher<'_, '_>, name: &str) {
     let mut full = ThetaSolver::new(&solid, 0.5, 2e-4).expect("a solid that can be factored");
     let start = Instant::now();
     let mut reduced = reduction.map(|r| {
-        let reduced = ReducedModel::new(&solid, &faces, r).expect("a reduction");
+        let reduced = ReducedModel::new(&solid, &faces, &faces, r).expect("a reduction");
         remarks::add(format!(
             "{name}: {} ({:.1} s to make)",
             reduced.estimate(),
             start.elapsed().as_secs_f64()
         ));
-        ReducedTheta::new(&solid, Arc::new(reduced), 0.5, 2e-4).expect("the same solid")
+        ReducedTheta::new(&solid, Arc::new(reduced), 0.5, 2e-4, &vec![0.0; solid.dof_count()])
+            .expect("the same solid")
     });
     const STEPS: u32 = 50;
     bencher.counter(ItemsCount::new(STEPS)).bench_local(|| {

@@ -71,7 +71,7 @@ pub struct RailEnergy {
     pub kinetic: f64,
     /// Bending, pads and foundation springs.
     pub elastic: f64,
-    /// Work of wheels and rail weight.
+    /// Work of wheels and rail weight, and of lifting hanging sleepers.
     pub wheels: f64,
     /// Work of pads on modelled sleepers.
     pub on_seats: f64,
@@ -113,8 +113,10 @@ pub struct RailState {
     a: Vec<f64>,
     /// Wheels and weight [N].
     load: Vec<f64>,
-    /// Seat displacements: current, one and two steps ago [m].
+    /// Seat displacements less the lifts: current, one and two steps ago [m].
     seats: [Vec<f64>; 3],
+    /// Last lifts [m].
+    lifts: Vec<f64>,
     /// Per modelled pad, upwards on the seat [N].
     spring: Vec<f64>,
     dashpot: Vec<f64>,
@@ -235,6 +237,7 @@ impl Rail {
             a: vec![0.0; n],
             load: vec![0.0; n],
             seats: [none.clone(), none.clone(), none.clone()],
+            lifts: none.clone(),
             spring: none.clone(),
             dashpot: none,
             energy: RailEnergy::default(),
@@ -242,12 +245,13 @@ impl Rail {
         }
     }
 
-    /// Advances by a step to seat displacements `seats` [m], `wheels` and fraction `weight` of the rail
-    /// weight.
+    /// Advances by a step to seat displacements `seats` [m], `lifts` of pads without force above them [m],
+    /// `wheels` and fraction `weight` of the rail weight.
     pub fn step(
         &self,
         state: &mut RailState,
         seats: impl Iterator<Item = f64>,
+        lifts: &[f64],
         wheels: &[Wheel],
         weight: f64,
         scratch: &mut RailScratch,
@@ -259,7 +263,7 @@ impl Rail {
         load.extend(self.weight.iter().map(|w| weight * w));
         self.add_wheels(wheels, load);
         state.seats.rotate_right(1);
-        state.seats[0].iter_mut().zip(seats).for_each(|(old, new)| *old = new);
+        state.seats[0].iter_mut().zip(seats.zip(lifts)).for_each(|(old, (new, lift))| *old = new - lift);
         let [now, last, earlier] = &state.seats;
         let speed = |k: usize| (1.5 * (now[k] - last[k]) - 0.5 * (last[k] - earlier[k])) / dt;
 
@@ -292,10 +296,12 @@ impl Rail {
         let (mut springs, mut squares) = (0.0, 0.0);
         for (k, &d) in self.seats.iter().enumerate() {
             let (spring, dashpot) = (stiff * (state.u[d] - now[k]), damp * (state.v[d] - speed(k)));
-            let lift = now[k] - last[k];
+            let (rise, lifted) = (now[k] - last[k], lifts[k] - state.lifts[k]);
             let mean = 0.5 * (dashpot + state.dashpot[k]);
-            energy.on_seats += (0.5 * (spring + state.spring[k]) + mean) * lift;
-            energy.pads += mean * (moved[d] - lift);
+            let force = 0.5 * (spring + state.spring[k]) + mean;
+            energy.on_seats += force * (rise + lifted);
+            energy.wheels += force * lifted;
+            energy.pads += mean * (moved[d] - rise);
             // The stiffness matrix contains pads on fixed seats.
             springs += 0.5 * stiff * (state.u[d] - now[k]).powi(2);
             squares += 0.5 * stiff * state.u[d].powi(2);
@@ -306,6 +312,7 @@ impl Rail {
         energy.elastic = self.stiffness.half_square(&state.u) - squares + springs;
         state.energy = energy;
         state.load.copy_from_slice(load);
+        state.lifts.copy_from_slice(lifts);
     }
 
     /// Static pad forces [N, downwards on the seat] per wheel position, with rail weight and foundation

@@ -65,8 +65,9 @@ fn energy_balances_while_wheel_rolls() {
     for n in 1..=4000 {
         let t = f64::from(n) * 5e-5;
         let wheels = [Wheel { at: -3.6 + 40.0 * t, force: 70e3 }, Wheel { at: -6.1 + 40.0 * t, force: 70e3 }];
+        let lifts = [0.0, 2e-3 * (t / 0.05).min(1.0), 0.0];
         let seats = (0..3).map(|k| -1e-3 * (30.0 * t + f64::from(k)).sin() * (1.0 - (-t / 0.01).exp()));
-        rail.step(&mut state, seats, &wheels, (t / 0.05).min(1.0), &mut scratch);
+        rail.step(&mut state, seats, &lifts, &wheels, (t / 0.05).min(1.0), &mut scratch);
         let e = state.energy();
         reference_energy = reference_energy.max(e.wheels.abs()).max(e.elastic);
         assert!(e.error().abs() < 1e-9 * reference_energy, "step {n}: {} of {reference_energy}", e.error());
@@ -89,7 +90,7 @@ fn sudden_wheel_tends_to_static_force() {
         let push = -state.force(0) - bed[0] * seat[0] - bed[1] * seat[1];
         seat[1] += 1e-4 * push / mass;
         seat[0] += 1e-4 * seat[1];
-        rail.step(&mut state, std::iter::once(seat[0]), &wheels, 0.0, &mut scratch);
+        rail.step(&mut state, std::iter::once(seat[0]), &[0.0], &wheels, 0.0, &mut scratch);
         peak = peak.max(state.force(0));
     }
     let expected = rail.static_seats([wheels.to_vec()].into_iter()).unwrap()[0][0];
@@ -122,7 +123,7 @@ fn rail_on_springs_matches_frequency() {
     let mut crossings = Vec::new();
     let mut before = 0.0;
     for n in 1..=400 {
-        rail.step(&mut state, std::iter::once(0.0), &[], 1.0, &mut scratch);
+        rail.step(&mut state, std::iter::once(0.0), &[0.0], &[], 1.0, &mut scratch);
         let x = state.deflection(&rail, 0) + weight;
         if before > 0.0 && x <= 0.0 {
             crossings.push((f64::from(n) - x / (x - before)) * dt);
@@ -151,7 +152,7 @@ fn dashpots_use_final_seat_velocity() {
     let mut scratch = RailScratch::default();
     for n in 1..=50 {
         let t = 1e-4 * f64::from(n);
-        rail.step(&mut state, std::iter::once(t * t), &[], 0.0, &mut scratch);
+        rail.step(&mut state, std::iter::once(t * t), &[0.0], &[], 0.0, &mut scratch);
         let expected = 40e3 * 2.0 * t + 1e6 * t * t;
         // The first two steps lack earlier motion.
         assert!(
@@ -180,11 +181,42 @@ fn outside_sleeper_matches_frequency() {
     let mut scratch = RailScratch::default();
     let still = 1000.0 / 40e6;
     for n in 1..=2000 {
-        rail.step(&mut state, std::iter::once(0.0), &[Wheel { at: 1.2, force: 1000.0 }], 0.0, &mut scratch);
+        rail.step(
+            &mut state,
+            std::iter::once(0.0),
+            &[0.0],
+            &[Wheel { at: 1.2, force: 1000.0 }],
+            0.0,
+            &mut scratch,
+        );
         if n == 1000 || n == 2000 {
             let down = -state.line(&rail).find(|p| (p[0] - 1.2).abs() < 1e-9).unwrap()[1];
             let expected = still * f64::from(n) / 1000.0;
             assert!((down / expected - 1.0).abs() < 2e-3, "{down} {expected}");
         }
     }
+}
+
+/// A sleeper over a void hangs on the rail. Its seat rises by the gap less the stretch of the pad and the deflection of a beam on an elastic
+/// foundation (Zimmermann 1888) without the support in its middle: c = c₀/(1 − s c₀), c₀ = λ/(2k), k = s/spacing.
+#[test]
+fn hanging_sleeper_is_carried_by_the_rail() {
+    let (dt, gap, weight) = (5e-5, 2e-4, 1600.0);
+    let rail = Rail::new(input(), dt).unwrap();
+    let (mut state, mut scratch) = (rail.laid(), RailScratch::default());
+    let (mut rise, mut speed, mut largest) = (0.0, 0.0, 0.0_f64);
+    for n in 1..=20_000 {
+        let share = (f64::from(n) * dt / 0.05).min(1.0);
+        rail.step(&mut state, std::iter::once(rise), &[share * gap], &[], 0.0, &mut scratch);
+        let force = -state.force(0) - share * weight;
+        speed = (speed + dt * force / (weight / 9.81)) * (1.0 - 20.0 * dt);
+        rise += dt * speed;
+        largest = largest.max(state.energy().wheels.abs());
+        assert!(state.energy().error().abs() < 1e-9 * largest, "step {n}: {:?}", state.energy());
+    }
+    let (series, stiffness) = (30e6, 30e6 / 0.6);
+    let continuous = (stiffness / (4.0 * 6.4e6_f64)).powf(0.25) / (2.0 * stiffness);
+    let expected = gap - weight * (1.0 / 120e6 + continuous / (1.0 - series * continuous));
+    println!("rises by {rise:.4e} m, expected {expected:.4e} m of {gap:.1e} m");
+    assert!(((gap - rise) / (gap - expected) - 1.0).abs() < 0.02);
 }

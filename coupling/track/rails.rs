@@ -13,9 +13,12 @@ pub struct Rails {
     spacing: f64,
     count: usize,
     load: CyclicLoad,
+    /// Height that the seats of each sleeper lack [m].
+    gaps: Vec<f64>,
     scratch: RailScratch,
     wheels: Vec<Wheel>,
     seats: Vec<f64>,
+    lifts: Vec<f64>,
 }
 
 /// State of the placed rails.
@@ -29,11 +32,11 @@ pub struct LaidRails {
 }
 
 impl Rails {
-    /// `count` rails for steps of `dt` [s]; `None` for invalid input.
-    pub fn new(input: RailInput, count: usize, load: CyclicLoad, dt: f64) -> Option<Rails> {
+    /// `count` rails for steps of `dt` [s]; `gaps` [m] by sleeper; `None` for invalid input.
+    pub fn new(input: RailInput, count: usize, gaps: &[f64], load: CyclicLoad, dt: f64) -> Option<Rails> {
         let (spacing, rail) = (input.spacing, Rail::new(input, dt)?);
-        let (scratch, wheels, seats) = Default::default();
-        Some(Rails { rail, spacing, count, load, scratch, wheels, seats })
+        let (scratch, wheels, seats, lifts) = Default::default();
+        Some(Rails { rail, spacing, count, load, gaps: gaps.to_vec(), scratch, wheels, seats, lifts })
     }
 
     /// Sleeper spacing [m].
@@ -68,9 +71,11 @@ impl Rails {
         self.seats.clear();
         self.seats.extend(heights.zip(&laid.heights).map(|(now, then)| now - then));
         let weight = self.load.applied_share(time);
+        self.lifts.clear();
+        self.lifts.extend(self.gaps.iter().map(|gap| weight * gap));
         for (r, state) in laid.rails.iter_mut().enumerate() {
             let own = self.seats.iter().skip(r).step_by(self.count).copied();
-            self.rail.step(state, own, &self.wheels, weight, &mut self.scratch);
+            self.rail.step(state, own, &self.lifts, &self.wheels, weight, &mut self.scratch);
         }
     }
 

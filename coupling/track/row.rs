@@ -17,4 +17,6 @@ pub struct SleeperRow {
     pub centres: Vec<[f64; 2]>,
     /// Rail seats in the sleeper frame [m].
     pub seats: Vec<[f64; 3]>,
+    /// Height by which each sleeper's seats are too low for a rail with mass [m].
+    pub gaps: Vec<f64>,
 }

@@ -87,7 +87,7 @@ impl<'a> Track<'a> {
         let count = row.filter(|r| !r.meshed).map_or(0, |r| r.centres.len());
         let rails = match (rail, row, load, view) {
             (Some(input), Some(row), Some(load), Some(view)) => {
-                Rails::new(input, row.seats.len(), load.clone(), view.model.dt())
+                Rails::new(input, row.seats.len(), &row.gaps, load.clone(), view.model.dt())
             }
             _ => None,
         };

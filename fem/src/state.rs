@@ -19,6 +19,10 @@ pub struct State {
     /// Gauss point states, see [`Model::point_start`]; may be empty for linear models. Shape `[points]`.
     #[serde(default)]
     pub points: Points,
+    /// Motion of a reduced solid; `u`, `v`, `a` then follow by
+    /// [`ThetaMethod::recover`](crate::theta::ThetaMethod::recover).
+    #[serde(default)]
+    pub reduced: Coordinates,
 }
 
 impl State {
@@ -26,7 +30,14 @@ impl State {
     pub fn new(model: &Model) -> State {
         let n = model.dof_count();
         let points = if model.is_linear() { Points::default() } else { model.new_points() };
-        let mut state = State { time: 0.0, u: vec![0.0; n], v: vec![0.0; n], a: vec![0.0; n], points };
+        let mut state = State {
+            time: 0.0,
+            u: vec![0.0; n],
+            v: vec![0.0; n],
+            a: vec![0.0; n],
+            points,
+            reduced: Coordinates::default(),
+        };
         for &(dof, value) in model.supports().fixed() {
             state.u[dof as usize] = value;
         }
@@ -40,6 +51,45 @@ impl State {
         self.v.clone_from(&other.v);
         self.a.clone_from(&other.a);
         self.points.clone_from(&other.points);
+        self.reduced.clone_from(&other.reduced);
+    }
+}
+
+/// Motion in the basis of a reduced solid: `u = rest + V q`, `v = V q'`, `a = V q''`; empty without a reduction.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Coordinates {
+    /// Displacement when the motion began [m]. Shape `[3 * nodes]`.
+    pub rest: Vec<f64>,
+    /// q [kg^½ m]. Shape `[shapes]`.
+    pub position: Vec<f64>,
+    /// q' [kg^½ m/s]. Shape `[shapes]`.
+    pub velocity: Vec<f64>,
+    /// q'' [kg^½ m/s²]. Shape `[shapes]`.
+    pub acceleration: Vec<f64>,
+}
+
+impl Coordinates {
+    /// No motion of `shapes` from displacements `rest` [m].
+    pub fn at_rest(rest: Vec<f64>, shapes: usize) -> Coordinates {
+        let zero = vec![0.0; shapes];
+        Coordinates { rest, position: zero.clone(), velocity: zero.clone(), acceleration: zero }
+    }
+
+    /// Exchanges the motion of the same solid.
+    pub fn swap_motion(&mut self, other: &mut Coordinates) {
+        std::mem::swap(&mut self.position, &mut other.position);
+        std::mem::swap(&mut self.velocity, &mut other.velocity);
+        std::mem::swap(&mut self.acceleration, &mut other.acceleration);
+    }
+
+    /// Copies the motion of the same solid; `rest` only if it is missing.
+    pub fn copy_motion(&mut self, from: &Coordinates) {
+        if self.rest.len() != from.rest.len() {
+            self.rest.clone_from(&from.rest);
+        }
+        self.position.clone_from(&from.position);
+        self.velocity.clone_from(&from.velocity);
+        self.acceleration.clone_from(&from.acceleration);
     }
 }
 

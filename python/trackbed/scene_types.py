@@ -222,7 +222,7 @@ RailKind = Literal["winkler", "beam"]
 
 
 # What a solid is reduced to.
-# "surface": Dofs of the contact surface, exact for slow loads.
+# "surface": Dofs of the surface near grains, exact for slow loads, and slowest modes.
 # "modes": Slowest modes with static corrections.
 ReductionKind = Literal["surface", "modes"]
 
@@ -1055,6 +1055,16 @@ class GrowthSource(TypedDict, total=False):
     unbalanced_ratio: Float
 
 
+class Hanging(TypedDict, total=False):
+    """Sleeper over a void."""
+
+    # Height by which its seats are too low for the rail [m]; > 0, ≤ 50 mm.
+    gap: Required[Quantity]
+
+    # Number of the sleeper, from 1.
+    sleeper: Required[Integer]
+
+
 class Hazard(TypedDict, total=False):
     """Statistics of the horizontal load on a structure: exceedance, peaks with a fitted law, loads of return periods, warning levels."""
 
@@ -1604,6 +1614,9 @@ class RailTable(TypedDict, total=False):
     # Damping of that bed [N s/m]; default 0; ≥ 0; with `"beam"`.
     foundation_damping: Quantity
 
+    # Sleepers that the rail lifts off the bed with the ramp; default none; with `"beam"`.
+    hanging: Sequence[Hanging]
+
     # Model of the rail.
     kind: Required[RailKind]
 
@@ -1639,7 +1652,7 @@ class Reduction(TypedDict, total=False):
     # Basis of the model.
     kind: Required[ReductionKind]
 
-    # Natural modes; default 0 (surface), 60 (modes); ≤ 1000 with static shapes, ≤ half the dofs.
+    # Natural modes; default 60; ≤ 2000 with static shapes, ≤ half the dofs.
     modes: Integer
 
 

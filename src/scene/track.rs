@@ -235,6 +235,19 @@ pub struct RailTable {
     pub extension: Option<Quantity<Length>>,
     /// Elements between sleepers; default 4; 1–100; with `"beam"`.
     pub elements: Option<u32>,
+    /// Sleepers that the rail lifts off the bed with the ramp; default none; with `"beam"`.
+    #[serde(default)]
+    pub hanging: Vec<Hanging>,
+}
+
+/// Sleeper over a void.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Hanging {
+    /// Number of the sleeper, from 1.
+    pub sleeper: u32,
+    /// Height by which its seats are too low for the rail [m]; > 0, ≤ 50 mm.
+    pub gap: Quantity<Length>,
 }
 
 /// How a rail works.

@@ -93,6 +93,37 @@ fn a_bogie_on_a_beam() {
     assert!((1.0..1.5).contains(&amplification), "{amplification}");
 }
 
+/// A sleeper over a void hangs on the rail by its weight; its neighbours take a larger share of the wheels until it touches the bed.
+#[test]
+fn sleeper_hangs_over_a_void() {
+    let scene = |gap: &str| springs(3, &(bogie("36 km/h") + BEAM + gap));
+    let results = |text: &str| {
+        let (folder, scene) = written(text);
+        let out = folder.join("out");
+        trackbed::run::run(&scene, &options(&out, 1)).unwrap();
+        let energy = json(&out.join("summary.json"))["energy"]["relative_error"].as_f64().unwrap();
+        assert!(energy < 1e-5, "{energy}");
+        Table::read(&out.join("history.csv"))
+    };
+    let (whole, gap) =
+        (results(&scene("")), results(&scene("hanging = [{ sleeper = 2, gap = \"3 mm\" }]\n")));
+    // After the swing of the lift, before the wheels.
+    let time = gap.column("time");
+    let quiet: Vec<usize> = (0..time.len()).filter(|k| (0.3..0.6).contains(&time[*k])).collect();
+    let mean = |values: &[f64]| quiet.iter().map(|k| values[*k]).sum::<f64>() / quiet.len() as f64;
+    let (load, z) = (mean(&gap.column("load_2")), gap.column("sleeper_2_z"));
+    let lifted = mean(&z) - z[0];
+    println!("load {load:.1} N, lifted {:.3} mm", 1e3 * lifted);
+    assert!((load / -(300.0 * 9.81) - 1.0).abs() < 0.02 && (2.5e-3..3e-3).contains(&lifted));
+    let share = |table: &Table, k: usize| extremes(&table.column(&format!("load_{k}")))[1] / 140e3;
+    let neighbour = share(&gap, 1) / share(&whole, 1);
+    let own = share(&gap, 2) / share(&whole, 2);
+    println!(
+        "share of the neighbour {neighbour:.3}, of the hanging sleeper {own:.3} times those without a gap"
+    );
+    assert!(neighbour > 1.1 && own < 0.6);
+}
+
 #[test]
 fn two_rails_equal_combined_rail() {
     let one = springs(3, &(bogie("200 km/h") + BEAM));
@@ -485,6 +516,12 @@ fn broken_rails_are_refused() {
         "extension = 9\nelements = 0",
         "track.rail.elements: found 0, expected 1 to 100",
     );
+    let hanging = |rows: &str, line: &str| {
+        let new = format!("extension = 9\nhanging = [{rows}]");
+        refused(&scene, "extension = \"9 m\"", &new, line);
+    };
+    hanging("{ sleeper = 3, gap = 0.001 }", "track.rail.hanging.0.sleeper: found 3, expected 1 to 2");
+    hanging("{ sleeper = 1, gap = 1 }", "track.rail.hanging.0.gap: found 1, expected above 0, at most 50 mm");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Limits of the solid: locking, small strains, skipped loads, overflow.
 
-use super::support::{COUPLED, Folder, json, run, write_lists};
+use super::support::{COUPLED, Folder, Table, json, run, write_lists};
 use serde_json::Value;
 
 const COLUMN: &str = r#"title = "column"
@@ -241,7 +241,8 @@ fn slower_reduction_gives_warning() {
     let scene = folder.write("scene.toml", COUPLED);
     let short =
         ["track.load.cycles=1", "track.load.rest=0.002", "track.load.ramp=0.002", "track.load.frequency=200"];
-    for (reduction, dearer) in [("{ kind = \"surface\" }", true), ("{ kind = \"modes\", modes = 10 }", false)]
+    for (reduction, dearer) in
+        [("{ kind = \"surface\", modes = 400 }", true), ("{ kind = \"modes\", modes = 10 }", false)]
     {
         let reduction = format!("solid.reduction={reduction}");
         let set: Vec<&str> = short.iter().copied().chain([reduction.as_str()]).collect();
@@ -250,4 +251,33 @@ fn slower_reduction_gives_warning() {
         println!("{reduction}: {warnings}");
         assert_eq!(warnings.contains("× slower ("), dearer, "{warnings}");
     }
+}
+
+/// Unbalanced forces of a reduced solid show its error in the motion since the start: large with few modes under single contacts.
+#[test]
+fn reduced_solid_states_its_error() {
+    let folder = Folder::new("reduction_error");
+    let mut mesh = trackbed_fem::Mesh::block([8, 8, 4], [2.0, 2.0, 1.0]);
+    mesh.coordinates.iter_mut().for_each(|x| x[2] -= 1.0);
+    write_lists(&mesh, folder.path());
+    let scene = folder.write("scene.toml", COUPLED);
+    let case = |reduction: &[&str]| {
+        let set = ["track.load.cycles=1", "output.frames=10", "coupling.substeps=\"auto\""];
+        let set: Vec<&str> = set.iter().chain(reduction).copied().collect();
+        run(&scene, &folder.join("out"), &set).good();
+        let summary = json(&folder.join("out/summary.json"));
+        let error = &summary["coupling"]["reduction"];
+        let warned = summary["warnings"].to_string().contains("solid.reduction: error of displacements");
+        let rows = Table::read(&folder.join("out/history.csv")).column("middle_u_z");
+        let sunk = rows[0] - rows.iter().fold(0.0_f64, |m, u| m.min(*u));
+        println!("{reduction:?}: {error}, middle sinks {sunk:.4e} m");
+        (sunk, error["displacement"].as_f64(), warned)
+    };
+    let (full, none, _) = case(&[]);
+    assert!(none.is_none());
+    let (sunk, found, warned) = case(&["solid.reduction={ kind = \"surface\" }"]);
+    assert!((sunk / full - 1.0).abs() < 1e-3 && found.unwrap() < 2e-3 && !warned);
+    let (sunk, found, warned) = case(&["solid.reduction={ kind = \"modes\" }"]);
+    let off = (sunk / full - 1.0).abs();
+    assert!(off > 0.5 && warned && (found.unwrap() / off - 1.0).abs() < 0.2, "{off}");
 }

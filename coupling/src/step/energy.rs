@@ -7,6 +7,7 @@ use crate::scheme::Scheme;
 use trackbed_dem as dem;
 use trackbed_fem as fem;
 use trackbed_fem::state::StepAudit;
+use trackbed_fem::theta::Stored;
 
 /// Splits the work of the loads, which the solver does not.
 pub(super) fn add_step_energy<B>(model: &Model<'_>, state: &mut State, work: &Work<B>, step: &StepAudit) {
@@ -23,8 +24,7 @@ pub(super) fn add_step_energy<B>(model: &Model<'_>, state: &mut State, work: &Wo
         work.transfer.interface_dashpot_error(&work.surface, rate, last, found);
     if model.scheme != Scheme::Lagged {
         // The lagged surface velocity has no jump.
-        state.rate.clear();
-        state.rate.extend_from_slice(&work.rate);
+        state.rate.clone_from(&work.rate);
     }
     state.spent.rayleigh += step.damping_dissipation;
     state.spent.absorbed += step.boundary_dissipation;
@@ -32,8 +32,27 @@ pub(super) fn add_step_energy<B>(model: &Model<'_>, state: &mut State, work: &Wo
     state.spent.numerical += step.numerical_dissipation;
 }
 
-/// Returns the stored energy.
+/// Returns the stored energy; of a reduced solid see [`Work::stored_energy`].
 pub fn stored_energy(model: &Model<'_>, state: &State) -> StoredEnergy {
+    let solid = Stored {
+        kinetic: fem::energy::kinetic(model.solid, &state.solid),
+        strain: fem::energy::strain(model.solid, &state.solid),
+        dead_load_work: model.dead_load.iter().zip(&state.solid.u).map(|(f, u)| f * u).sum::<f64>(),
+    };
+    with_solid(model, state, solid)
+}
+
+impl<B> Work<B> {
+    /// Returns the stored energy.
+    pub fn stored_energy(&self, model: &Model<'_>, state: &State) -> StoredEnergy {
+        match self.solver.stored(&state.solid) {
+            Some(solid) => with_solid(model, state, solid),
+            None => stored_energy(model, state),
+        }
+    }
+}
+
+fn with_solid(model: &Model<'_>, state: &State, solid: Stored) -> StoredEnergy {
     let grains = dem::measure::energies(&model.grains, &state.grains);
     StoredEnergy {
         grains_kinetic: grains.kinetic_translation + grains.kinetic_rotation,
@@ -41,9 +60,9 @@ pub fn stored_energy(model: &Model<'_>, state: &State) -> StoredEnergy {
         bonds: grains.elastic_bonds,
         mounts: grains.elastic_mounts,
         grains_gravity: grains.gravity,
-        solid_kinetic: fem::energy::kinetic(model.solid, &state.solid),
-        solid_strain: fem::energy::strain(model.solid, &state.solid),
-        solid_gravity: -model.dead_load.iter().zip(&state.solid.u).map(|(f, u)| f * u).sum::<f64>(),
+        solid_kinetic: solid.kinetic,
+        solid_strain: solid.strain,
+        solid_gravity: -solid.dead_load_work,
         ..StoredEnergy::default()
     }
 }

@@ -2,9 +2,11 @@
 
 use super::model::Model;
 use crate::scheme::Scheme;
+use std::sync::Arc;
 use trackbed_dem as dem;
 use trackbed_fem::SolveError;
-use trackbed_fem::theta::{NonlinearTheta, ThetaMethod, ThetaSolver};
+use trackbed_fem::reduction::ReducedModel;
+use trackbed_fem::theta::{NonlinearTheta, ReducedTheta, ThetaMethod, ThetaSolver};
 
 /// One stored factor for a linear solid without initial stress, else Newton's method.
 ///
@@ -19,6 +21,18 @@ pub(super) fn solver(model: &Model<'_>, without_stresses: bool) -> Result<Box<dy
         return Err(SolveError::Plastic { material: solid.plastic_material().unwrap_or_default() });
     }
     Ok(Box::new(NonlinearTheta::new(solid, theta, window, model.newton)?))
+}
+
+/// Solver in the basis of a reduced solid.
+///
+/// # Errors
+/// Plastic or another solid.
+pub(super) fn reduced_solver(
+    model: &Model<'_>,
+    reduced: Arc<ReducedModel>,
+) -> Result<Box<dyn ThetaMethod>, SolveError> {
+    let (solid, theta, window) = (model.solid, model.theta, model.window());
+    Ok(Box::new(ReducedTheta::new(solid, reduced, theta, window, &model.dead_load)?))
 }
 
 /// Errors of a coupled step.

@@ -2,7 +2,7 @@
 
 use super::interface_check::InterfaceCheck;
 use super::model::Model;
-use super::solver::solver;
+use super::solver::{reduced_solver, solver};
 use super::stiffened::{LinearisedContact, Stiffened};
 use crate::energy_balance::WorkAndDissipation;
 use crate::interface_stability::InterfaceStability;
@@ -17,8 +17,9 @@ use trackbed_dem as dem;
 use trackbed_fem as fem;
 use trackbed_fem::SolveError;
 use trackbed_fem::nonlinear::{SolverState, Statistics};
-use trackbed_fem::reduction::{Estimate, ReducedModel};
-use trackbed_fem::theta::{ReducedTheta, ThetaMethod};
+use trackbed_fem::reduction::{Estimate, FoundError, ReducedModel};
+use trackbed_fem::statics::StaticSolver;
+use trackbed_fem::theta::ThetaMethod;
 
 /// State of a run.
 #[derive(Clone, Serialize, Deserialize)]
@@ -43,6 +44,10 @@ pub struct State {
     pub(super) last_contacts: Vec<LinearisedContact>,
     /// Interface checks.
     pub interface_check: InterfaceCheck,
+    /// Errors of a reduced solid.
+    pub reduction: FoundError,
+    /// Faces of the surface that the basis of a reduced solid has loads on; empty without.
+    pub loaded_faces: Vec<u32>,
 }
 
 /// Scratch memory and factors; `B` computes the DEM steps.
@@ -53,8 +58,8 @@ pub struct Work<B = dem::Work> {
     pub surface: SolidSurface,
     pub(super) transfer: Transfer,
     pub(super) solver: Box<dyn ThetaMethod>,
-    /// Basis of a reduced solid.
-    reduced: Option<Arc<ReducedModel>>,
+    /// Basis of a reduced solid, and a solver for its errors.
+    reduced: Option<(Arc<ReducedModel>, StaticSolver)>,
     pub(super) load: Vec<f64>,
     pub(super) contact_load: Vec<f64>,
     pub(super) other_load: Vec<f64>,
@@ -81,6 +86,8 @@ impl State {
             lagged: Default::default(),
             last_contacts: Vec::new(),
             interface_check: InterfaceCheck::default(),
+            reduction: FoundError::default(),
+            loaded_faces: Vec::new(),
         }
     }
 
@@ -92,6 +99,10 @@ impl State {
         self.spent = WorkAndDissipation::default();
         self.passes = IterationStats::default();
         self.interface_check = InterfaceCheck::default();
+        self.reduction = FoundError::default();
+        // The next run may have another basis.
+        self.solid.reduced = Default::default();
+        self.loaded_faces.clear();
     }
 
     /// Adds an initial contact load [N], shape `[3·nodes]`, for the lagged scheme.
@@ -147,24 +158,39 @@ impl<B: dem::BackEnd> Work<B> {
     /// # Errors
     /// Plastic solid, initial stress, or another solid than the reduced one.
     pub fn reduce(&mut self, model: &Model<'_>, reduced: Arc<ReducedModel>) -> Result<(), SolveError> {
-        self.solver = Box::new(ReducedTheta::new(model.solid, reduced.clone(), model.theta, model.window())?);
-        self.reduced = Some(reduced);
+        self.solver = reduced_solver(model, reduced.clone())?;
+        self.reduced = Some((reduced, StaticSolver::new(model.solid)?));
         Ok(())
     }
 
-    pub(super) fn refactor(&mut self, model: &Model<'_>, without_stresses: bool) -> Result<(), SolveError> {
-        match self.reduced.clone() {
-            Some(reduced) => self.reduce(model, reduced),
-            None => {
-                self.solver = solver(model, without_stresses)?;
-                Ok(())
-            }
+    /// Completes the motion of a reduced solid, of which windows compute the contact surface.
+    pub fn recover(&self, solid: &mut fem::state::State) {
+        self.solver.recover(solid);
+    }
+
+    /// Compares the last window of a reduced solid with the full one.
+    ///
+    /// # Errors
+    /// Values not finite.
+    pub fn find_reduction_error(&mut self, model: &Model<'_>, state: &mut State) -> Result<(), SolveError> {
+        let Some((_, solver)) = &mut self.reduced else { return Ok(()) };
+        match self.solver.out_of_balance(model.solid, &state.solid, &self.load) {
+            Some(step) if state.passes.windows > 0 => state.reduction.add(model.solid, solver, &step),
+            _ => Ok(()),
         }
+    }
+
+    pub(super) fn refactor(&mut self, model: &Model<'_>, without_stresses: bool) -> Result<(), SolveError> {
+        self.solver = match &self.reduced {
+            Some((reduced, _)) => reduced_solver(model, reduced.clone())?,
+            None => solver(model, without_stresses)?,
+        };
+        Ok(())
     }
 
     /// Accuracy estimate of the reduction, if any.
     pub fn reduction(&self) -> Option<Estimate> {
-        self.reduced.as_ref().map(|reduced| *reduced.estimate())
+        self.reduced.as_ref().map(|(reduced, _)| *reduced.estimate())
     }
 
     /// Newton statistics of a plastic solid.

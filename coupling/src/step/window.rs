@@ -33,6 +33,7 @@ pub fn step<B: BackEnd>(
     let window = model.window();
     work.other_load.fill(0.0);
     solid_load(state.solid.time + 0.5 * window, &mut work.other_load);
+    work.solver.keep_current(model.solid, &mut state.solid, &work.other_load);
     copy(&state.solid, &mut work.before);
     work.rate.copy_from_slice(&state.solid.v);
     let (passes, audit) = match model.scheme {
@@ -50,11 +51,13 @@ pub fn step<B: BackEnd>(
     state.passes.passes += u64::from(passes);
     add_step_energy(model, state, work, &audit);
     // The next window begins at the computed surface.
-    state.correction.clear();
-    let motion = state.solid.u.iter().zip(&work.before.u).zip(&work.rate);
-    state.correction.extend(motion.map(|((u, before), rate)| u - before - rate * window));
-    let jump = work.surface.nodes().iter().flat_map(|&n| [0, 1, 2].map(|d| 3 * n as usize + d));
-    let jump = jump.fold(0.0_f64, |m, i| m.max(state.correction[i].abs()));
+    state.correction.resize(work.rate.len(), 0.0);
+    let mut jump = 0.0_f64;
+    for i in work.surface.nodes().iter().flat_map(|&n| [0, 1, 2].map(|d| 3 * n as usize + d)) {
+        let moved = state.solid.u[i] - work.before.u[i];
+        state.correction[i] = moved - work.rate[i] * window;
+        jump = jump.max(state.correction[i].abs());
+    }
     state.grains.add_surface_travel(work.surface.reach_of(2.0 * jump));
     Ok(())
 }
@@ -154,6 +157,7 @@ fn copy(from: &fem::state::State, to: &mut fem::state::State) {
     to.u.copy_from_slice(&from.u);
     to.v.copy_from_slice(&from.v);
     to.a.copy_from_slice(&from.a);
+    to.reduced.copy_motion(&from.reduced);
 }
 
 fn mean_velocity<B>(solid: &fem::state::State, work: &mut Work<B>, window: f64) {
@@ -187,12 +191,14 @@ fn begin<B>(model: &Model<'_>, state: &State, work: &mut Work<B>) -> Result<(), 
 
 /// First-step displacement of tangential springs in excess of the rate.
 fn correct<B>(state: &State, work: &mut Work<B>) {
-    work.correction.clear();
     let half = state.grains.kick() - 0.5 * state.grains.dt();
-    if state.rate.len() == state.correction.len() {
-        let rates = state.rate.iter().zip(&work.rate);
-        let all = state.correction.iter().zip(rates);
-        work.correction.extend(all.map(|(jump, (old, new))| jump + (old - new) * half));
+    if state.rate.is_empty() || state.rate.len() != state.correction.len() {
+        work.correction.clear();
+        return;
+    }
+    work.correction.resize(state.correction.len(), 0.0);
+    for i in work.surface.nodes().iter().flat_map(|&n| [0, 1, 2].map(|d| 3 * n as usize + d)) {
+        work.correction[i] = state.correction[i] + (state.rate[i] - work.rate[i]) * half;
     }
 }
 

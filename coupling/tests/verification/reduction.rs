@@ -12,8 +12,8 @@ const SETTLING: f64 = 0.3;
 fn pulse(solid: &fem::Model, reduction: Option<Reduction>) -> (f64, f64, f64) {
     let mut c = Coupled::new(solid, sleeper_on_a_bed(2, 5e-5), 5);
     if let Some(reduction) = reduction {
-        let reduced =
-            Arc::new(ReducedModel::new(solid, c.work.surface.faces(), reduction).expect("a reduction"));
+        let faces = c.work.surface.faces();
+        let reduced = Arc::new(ReducedModel::new(solid, faces, faces, reduction).expect("a reduction"));
         println!("{reduction:?}: {}", reduced.estimate());
         c.work.reduce(&c.model, reduced).expect("the same solid");
         assert!(c.work.reduction().is_some());
@@ -24,7 +24,7 @@ fn pulse(solid: &fem::Model, reduction: Option<Reduction>) -> (f64, f64, f64) {
         .iter()
         .position(|x| (x[0] - 0.5).abs() + (x[1] - 0.5).abs() + x[2].abs() < 1e-9)
         .expect("a node in the middle of the top");
-    let start = step::stored_energy(&c.model, &c.state);
+    let start = c.work.stored_energy(&c.model, &c.state);
     let (mut ground, mut sleeper, mut rest) = (0.0_f64, 0.0_f64, 0.0);
     while c.state.solid.time < SETTLING + PULSE {
         let time = c.state.solid.time;
@@ -40,7 +40,7 @@ fn pulse(solid: &fem::Model, reduction: Option<Reduction>) -> (f64, f64, f64) {
             sleeper = sleeper.max(rest - c.state.grains.position(0).z);
         }
     }
-    let (now, spent) = (step::stored_energy(&c.model, &c.state), step::work_and_dissipation(&c.state));
+    let (now, spent) = (c.work.stored_energy(&c.model, &c.state), step::work_and_dissipation(&c.state));
     let error = now.total() - start.total() + spent.dissipated() - spent.work();
     (ground, sleeper, error.abs() / (start.grains_gravity - now.grains_gravity + spent.work()))
 }

@@ -2,18 +2,19 @@
 //!
 //! Theory manual: equation (4.19) of `docs/theory/solid.md`.
 
-use super::{Estimate, MAX_SHAPES, Reduction, ReductionError};
+use super::orthonormal::{Orthonormal, orthonormal};
+use super::{Estimate, MAX_SHAPES, OutOfBalance, Reduction, ReductionError};
 use crate::loads;
 use crate::mesh::Face;
-use crate::modal::{self, Modes};
+use crate::modal;
 use crate::model::Model;
 use crate::newmark::check_density;
+use crate::solver::kernels::{subtract_product, subtract_transposed};
+use crate::state::{Coordinates, State};
 use crate::statics::StaticSolver;
 use crate::supports::CONSTRAINED;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
-/// Relative part of a dependent vector.
-const DEPENDENT: f64 = 1e-7;
 const COMPARED: usize = 10;
 
 /// Values read per step.
@@ -27,20 +28,18 @@ pub struct Cost {
     pub full: f64,
 }
 
-/// Reduced solid with mass-orthonormal basis; rows are dofs.
+/// Reduced solid with mass-orthonormal basis.
 #[derive(Clone, Debug)]
 pub struct ReducedModel {
     count: usize,
-    /// V. Shape `[3 * nodes][shapes]`.
+    /// V. Shape `[shapes][3 * nodes]`.
     pub(crate) shape: Vec<f64>,
-    /// K V. Shape `[3 * nodes][shapes]`.
-    pub(crate) force: Vec<f64>,
-    /// M V. Shape `[3 * nodes][shapes]`.
-    pub(crate) momentum: Vec<f64>,
     /// Squared circular frequencies [1/s²], ascending. Shape `[shapes]`.
     pub(crate) square: Vec<f64>,
     /// VᵀD V.
     pub(crate) dashpots: Option<DMatrix<f64>>,
+    /// Free dofs of the contact surface, ascending.
+    pub(crate) surface: Vec<u32>,
     estimate: Estimate,
 }
 
@@ -49,34 +48,46 @@ impl ReducedModel {
     ///
     /// # Errors
     /// Failed analysis.
-    pub fn cost(model: &Model, faces: &[Face], reduction: Reduction) -> Result<Cost, ReductionError> {
+    pub fn cost(
+        model: &Model,
+        faces: &[Face],
+        loaded: &[Face],
+        reduction: Reduction,
+    ) -> Result<Cost, ReductionError> {
+        let rows = surface_dofs(model, faces).len();
         let shapes = match reduction {
-            Reduction::Surface { modes } => surface_dofs(model, faces).len() + modes,
-            Reduction::Modes { modes } => 3 + faces.len() + modes,
+            Reduction::Surface { modes } => surface_dofs(model, loaded).len() + modes,
+            Reduction::Modes { modes } => 3 + loaded.len() + modes,
         };
         let demand = model.solver_demand(true)?;
         let blocks = model.matrices().stiffness_blocks().len() as f64;
         Ok(Cost {
             shapes,
-            // Vectors twice, their forces and momenta once.
-            reduced: 4.0 * (model.dof_count() * shapes) as f64,
+            // Of the contact surface, for load and motion.
+            reduced: 2.0 * (rows * shapes) as f64,
             // Factor twice; stiffness and mass for right-hand side and energy balance.
             full: 2.0 * demand.factor_len as f64 + 2.0 * 10.0 * blocks,
         })
     }
 
-    /// Reduces a model with contact surface `faces` and estimates the error.
+    /// Reduces a model with contact surface `faces`, of which contacts load those in `loaded`, and estimates the
+    /// error.
     ///
     /// # Errors
     /// Plasticity, insufficient constraints, no density, no free surface dofs, too many basis vectors,
     /// unconverged modes.
-    pub fn new(model: &Model, faces: &[Face], reduction: Reduction) -> Result<ReducedModel, ReductionError> {
+    pub fn new(
+        model: &Model,
+        faces: &[Face],
+        loaded: &[Face],
+        reduction: Reduction,
+    ) -> Result<ReducedModel, ReductionError> {
         check_density(model)?;
-        let dofs = surface_dofs(model, faces);
+        let dofs = surface_dofs(model, loaded);
         let (statics, modes) = match reduction {
             Reduction::Surface { modes } => (dofs.len(), modes),
             Reduction::Modes { modes: 0 } => return Err(ReductionError::NoModes),
-            Reduction::Modes { modes } => (3 + faces.len(), modes),
+            Reduction::Modes { modes } => (3 + loaded.len(), modes),
         };
         let shapes = statics + modes;
         if dofs.is_empty() {
@@ -87,17 +98,28 @@ impl ReducedModel {
         }
         let mut solver = StaticSolver::new(model)?;
         let natural = modal::solve(model, modes.max(COMPARED))?;
-        let mut span = Span::new(model);
-        for shape in &natural.shapes[..modes.min(natural.shapes.len())] {
-            span.add(shape.clone());
+        // Moved supports belong to the state, not to the basis.
+        let still = vec![0.0; model.supports().fixed().len()];
+        let mut columns = Vec::with_capacity(model.dof_count() * shapes);
+        for load in static_loads(model, loaded, &dofs, reduction) {
+            columns.extend(solver.solve_prescribed(model, &load, Some(&still))?.u);
         }
-        for load in static_loads(model, faces, &dofs, reduction) {
-            // Moved supports belong to the state, not to the basis.
-            let zero = vec![0.0; model.supports().fixed().len()];
-            span.add(solver.solve_prescribed(model, &load, Some(&zero))?.u);
+        if matches!(reduction, Reduction::Surface { .. }) {
+            columns = surface_motions(&dofs, columns)?;
         }
-        let mut reduced = span.finish(&natural)?;
-        reduced.estimate.static_errors(model, faces, &mut solver, &reduced.square, &reduced.shape)?;
+        natural.shapes[..modes.min(natural.shapes.len())].iter().for_each(|s| columns.extend(s));
+        let Orthonormal { shape, square, dashpots } = orthonormal(model, columns)?;
+        let mut reduced = ReducedModel {
+            count: square.len(),
+            estimate: Estimate::of_frequencies(model, &square, &natural),
+            shape,
+            square,
+            dashpots,
+            surface: surface_dofs(model, faces).iter().map(|&d| d as u32).collect(),
+        };
+        let mut estimate = reduced.estimate;
+        estimate.static_errors(model, loaded, &mut solver, &reduced)?;
+        reduced.estimate = estimate;
         Ok(reduced)
     }
 
@@ -115,6 +137,83 @@ impl ReducedModel {
     pub fn estimate(&self) -> &Estimate {
         &self.estimate
     }
+
+    /// Vᵀ x. Shape `[shapes]`.
+    pub(crate) fn project(&self, x: &[f64]) -> Vec<f64> {
+        let mut negative = vec![0.0; self.count];
+        subtract_transposed::<1>(&self.shape, x.len(), &mut negative, x);
+        negative.iter().map(|q| -q).collect()
+    }
+
+    /// Coordinates of a motion that begins with `state`; velocity outside the basis is lost.
+    pub(crate) fn coordinates(&self, model: &Model, state: &State) -> Coordinates {
+        let mut momentum = vec![0.0; state.v.len()];
+        model.mass_times(&state.v, &mut momentum);
+        let velocity = self.project(&momentum);
+        Coordinates { velocity, ..Coordinates::at_rest(state.u.clone(), self.count) }
+    }
+
+    /// Writes the motion of all dofs but those in `current`.
+    pub(crate) fn recover(&self, state: &mut State, current: &[bool]) {
+        let q = &state.reduced;
+        if q.position.is_empty() {
+            return;
+        }
+        let motion = q.position.iter().zip(&q.velocity).zip(&q.acceleration);
+        let negative: Vec<f64> = motion.flat_map(|((q, v), a)| [-q, -v, -a]).collect();
+        let all = self.expand(&negative);
+        for (d, &[u, v, a]) in all.as_chunks::<3>().0.iter().enumerate().filter(|(d, _)| !current[*d]) {
+            state.u[d] = state.reduced.rest[d] + u;
+            (state.v[d], state.a[d]) = (v, a);
+        }
+    }
+
+    /// V of three vectors of coordinates, interleaved with opposite sign.
+    fn expand(&self, negative: &[f64]) -> Vec<f64> {
+        let n = self.shape.len() / self.count;
+        let mut all = vec![0.0; 3 * n];
+        subtract_product::<3>(&self.shape, n, negative, &mut all);
+        all
+    }
+
+    /// Force that the basis leaves unbalanced by mean displacement, velocity, acceleration, see
+    /// `expand`.
+    pub(crate) fn out_of_balance(
+        &self,
+        model: &Model,
+        state: &State,
+        load: &[f64],
+        negative: &[f64],
+    ) -> OutOfBalance {
+        let (n, c) = (load.len(), model.rayleigh());
+        let all = self.expand(negative);
+        let part = |k: usize| all.as_chunks::<3>().0.iter().map(move |x| x[k]);
+        let (moved, v, a): (Vec<f64>, Vec<f64>, Vec<f64>) =
+            (part(0).collect(), part(1).collect(), part(2).collect());
+        let rest = &state.reduced.rest;
+        let strained: Vec<f64> = (0..n).map(|d| rest[d] + moved[d] + c.beta_k * v[d]).collect();
+        let pushed: Vec<f64> = (0..n).map(|d| a[d] + c.alpha_m * v[d]).collect();
+        let mut force = load.to_vec();
+        let mut product = vec![0.0; n];
+        model.stiffness_times(&strained, &mut product);
+        force.iter_mut().zip(&product).for_each(|(f, p)| *f -= p);
+        model.mass_times(&pushed, &mut product);
+        force.iter_mut().zip(&product).for_each(|(f, p)| *f -= p);
+        product.fill(0.0);
+        model.dashpot_times(&v, &mut product);
+        force.iter_mut().zip(&product).for_each(|(f, p)| *f -= p);
+        model.supports().fixed().iter().for_each(|(d, _)| force[*d as usize] = 0.0);
+        OutOfBalance { force, moved }
+    }
+}
+
+/// Static responses to unit forces on `dofs`, combined to unit displacements of them: columns of similar size.
+fn surface_motions(dofs: &[usize], columns: Vec<f64>) -> Result<Vec<f64>, ReductionError> {
+    let responses = DMatrix::from_vec(columns.len() / dofs.len(), dofs.len(), columns);
+    let flexibility = DMatrix::from_fn(dofs.len(), dofs.len(), |i, k| responses[(dofs[i], k)]);
+    let symmetric = 0.5 * (&flexibility + flexibility.transpose());
+    let stiffness = symmetric.cholesky().ok_or(ReductionError::NotDefinite)?.inverse();
+    Ok((responses * stiffness).data.into())
 }
 
 fn surface_dofs(model: &Model, faces: &[Face]) -> Vec<usize> {
@@ -156,92 +255,4 @@ fn static_loads<'a>(
             })))
         }
     }
-}
-
-struct Span<'m> {
-    model: &'m Model,
-    shapes: Vec<Vec<f64>>,
-    momenta: Vec<Vec<f64>>,
-}
-
-impl<'m> Span<'m> {
-    fn new(model: &'m Model) -> Span<'m> {
-        Span { model, shapes: Vec::new(), momenta: Vec::new() }
-    }
-
-    /// Adds a vector by Gram–Schmidt, twice.
-    fn add(&mut self, mut shape: Vec<f64>) {
-        let mut momentum = vec![0.0; shape.len()];
-        let norm = |model: &Model, x: &[f64], m: &mut [f64]| {
-            model.mass_times(x, m);
-            dot(x, m).max(0.0).sqrt()
-        };
-        let before = norm(self.model, &shape, &mut momentum);
-        for _ in 0..2 {
-            for (v, mv) in self.shapes.iter().zip(&self.momenta) {
-                let part = dot(&shape, mv);
-                shape.iter_mut().zip(v).for_each(|(x, v)| *x -= part * v);
-            }
-        }
-        let after = norm(self.model, &shape, &mut momentum);
-        if after <= DEPENDENT * before {
-            return;
-        }
-        shape.iter_mut().for_each(|x| *x /= after);
-        momentum.iter_mut().for_each(|x| *x /= after);
-        self.shapes.push(shape);
-        self.momenta.push(momentum);
-    }
-
-    fn finish(self, natural: &Modes) -> Result<ReducedModel, ReductionError> {
-        let (n, count) = (self.model.dof_count(), self.shapes.len());
-        let columns = DMatrix::from_fn(n, count, |d, k| self.shapes[k][d]);
-        let images = |times: &dyn Fn(&[f64], &mut [f64])| {
-            let mut out = DMatrix::zeros(n, count);
-            for k in 0..count {
-                let mut column = vec![0.0; n];
-                times(columns.column(k).as_slice(), &mut column);
-                out.set_column(k, &DVector::from_vec(column));
-            }
-            out
-        };
-        let forces = images(&|x, y| self.model.stiffness_times(x, y));
-        let stiffness = columns.transpose() * &forces;
-        let eigen = (0.5 * (&stiffness + stiffness.transpose())).symmetric_eigen();
-        let mut order: Vec<usize> = (0..count).collect();
-        order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
-        let square: Vec<f64> = order.iter().map(|&k| eigen.eigenvalues[k]).collect();
-        if !square.iter().all(|s| *s > 0.0) {
-            return Err(ReductionError::NotDefinite);
-        }
-        let turn = DMatrix::from_fn(count, count, |i, k| eigen.eigenvectors[(i, order[k])]);
-        let shapes = &columns * &turn;
-        let momenta = DMatrix::from_fn(n, count, |d, k| self.momenta[k][d]) * &turn;
-        let dashpots = (!self.model.matrices().dashpots().is_empty()).then(|| {
-            let mut damping = DMatrix::zeros(n, count);
-            for k in 0..count {
-                let mut column = vec![0.0; n];
-                self.model.dashpot_times(shapes.column(k).as_slice(), &mut column);
-                damping.set_column(k, &DVector::from_vec(column));
-            }
-            shapes.transpose() * damping
-        });
-        Ok(ReducedModel {
-            count,
-            force: by_rows(&(forces * &turn)),
-            momentum: by_rows(&momenta),
-            shape: by_rows(&shapes),
-            estimate: Estimate::of_frequencies(self.model, &square, natural),
-            square,
-            dashpots,
-        })
-    }
-}
-
-fn by_rows(matrix: &DMatrix<f64>) -> Vec<f64> {
-    matrix.transpose().as_slice().to_vec()
-}
-
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

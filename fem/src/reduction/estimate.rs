@@ -1,6 +1,7 @@
-//! A-priori error estimate of a reduction.
+//! Errors of a reduction: estimated beforehand, found in a run.
 
-use super::ReductionError;
+use super::{ReducedModel, ReductionError};
+use crate::error::SolveError;
 use crate::loads;
 use crate::mesh::Face;
 use crate::modal::Modes;
@@ -52,17 +53,14 @@ impl Estimate {
         model: &Model,
         faces: &[Face],
         solver: &mut StaticSolver,
-        square: &[f64],
-        shape: &[f64],
+        basis: &ReducedModel,
     ) -> Result<(), ReductionError> {
         let zero = vec![0.0; model.supports().fixed().len()];
         let mut lost = |load: &[f64]| -> Result<f64, ReductionError> {
-            let full = super::basis::dot(load, &solver.solve_prescribed(model, load, Some(&zero))?.u);
-            let mut q = vec![0.0; square.len()];
-            for (f, row) in load.iter().zip(shape.chunks_exact(square.len())).filter(|(f, _)| **f != 0.0) {
-                q.iter_mut().zip(row).for_each(|(q, v)| *q += f * v);
-            }
-            let reduced: f64 = q.iter().zip(square).map(|(q, s)| q * q / s).sum();
+            let u = solver.solve_prescribed(model, load, Some(&zero))?.u;
+            let full: f64 = load.iter().zip(&u).map(|(f, u)| f * u).sum();
+            let forces = basis.project(load);
+            let reduced: f64 = forces.iter().zip(&basis.square).map(|(q, s)| q * q / s).sum();
             Ok(if full > 0.0 { 1.0 - reduced / full } else { 0.0 })
         };
         let mut load = vec![0.0; model.dof_count()];
@@ -102,4 +100,66 @@ impl fmt::Display for Estimate {
             if self.open { " or more" } else { "" }
         )
     }
+}
+
+/// Force that the basis of a reduced solid leaves unbalanced in a step.
+pub struct OutOfBalance {
+    /// `F - M a - C v - K u` at free dofs [N]. Shape `[3 * nodes]`.
+    pub force: Vec<f64>,
+    /// Mean displacement in the step, from the start of the motion [m]. Shape `[3 * nodes]`.
+    pub moved: Vec<f64>,
+}
+
+/// Largest errors of a reduced solid found in a run: the static answer to what its basis leaves unbalanced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FoundError {
+    /// Steps examined.
+    pub steps: u64,
+    /// Largest error of a displacement [m].
+    pub displacement: f64,
+    /// Largest displacement from the start of the motion, with the error [m].
+    pub largest_displacement: f64,
+    /// Largest strain energy of the error [J].
+    pub energy: f64,
+    /// Largest strain energy of these displacements [J].
+    pub largest_energy: f64,
+}
+
+impl FoundError {
+    /// Examines a step.
+    ///
+    /// # Errors
+    /// As [`StaticSolver::solve_prescribed`].
+    pub fn add(
+        &mut self,
+        model: &Model,
+        solver: &mut StaticSolver,
+        step: &OutOfBalance,
+    ) -> Result<(), SolveError> {
+        let still = vec![0.0; model.supports().fixed().len()];
+        let error = solver.solve_prescribed(model, &step.force, Some(&still))?.u;
+        let corrected: Vec<f64> = step.moved.iter().zip(&error).map(|(x, e)| x + e).collect();
+        let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let energy = |x: &[f64]| 0.5 * model.matrices().stiffness_form(x);
+        self.steps += 1;
+        self.displacement = self.displacement.max(largest(&error));
+        self.largest_displacement = self.largest_displacement.max(largest(&corrected));
+        self.energy = self.energy.max(energy(&error));
+        self.largest_energy = self.largest_energy.max(energy(&corrected));
+        Ok(())
+    }
+
+    /// Error of the displacement over the largest displacement [-].
+    pub fn of_displacement(&self) -> f64 {
+        ratio(self.displacement, self.largest_displacement)
+    }
+
+    /// Error of the stress over the largest stress, in the energy norm [-].
+    pub fn of_stress(&self) -> f64 {
+        ratio(self.energy, self.largest_energy).sqrt()
+    }
+}
+
+fn ratio(error: f64, of: f64) -> f64 {
+    if of > 0.0 { error / of } else { 0.0 }
 }

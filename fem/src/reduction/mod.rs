@@ -5,25 +5,27 @@
 //! * [`Reduction::Modes`]: lowest modes with static corrections for surface traction and pressure (Craig
 //!   and Bampton 1968; Craig and Chang 1977).
 //!
-//! The basis is mass-orthonormal with diagonal `VᵀK V`; the state keeps all nodes.
+//! The basis is mass-orthonormal with diagonal `VᵀK V`; the state keeps coordinates in it and the motion of the
+//! contact surface, other nodes on demand.
 //!
 //! Limits: linear elastic, constrained bodies, fixed supports, at most [`MAX_SHAPES`] basis vectors;
 //! approximate stresses near point forces.
 
 mod basis;
 mod estimate;
+mod orthonormal;
 #[cfg(test)]
 mod tests;
 
 pub use basis::{Cost, ReducedModel};
-pub use estimate::Estimate;
+pub use estimate::{Estimate, FoundError, OutOfBalance};
 
 use crate::error::SolveError;
 use crate::modal::ModalError;
 use thiserror::Error;
 
 /// Largest number of basis vectors; beyond it the sparse factor is faster.
-pub const MAX_SHAPES: usize = 1000;
+pub const MAX_SHAPES: usize = 2000;
 
 /// Type of reduction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

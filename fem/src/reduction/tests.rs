@@ -35,6 +35,10 @@ fn top(model: &Model) -> Vec<Face> {
     mesh.boundary_faces().into_iter().filter(|f| f.centre(mesh)[2] > 0.5 - 1e-9).collect()
 }
 
+fn stepper(model: &Model, reduced: Arc<ReducedModel>, theta: f64, dt: f64) -> ReducedTheta {
+    ReducedTheta::new(model, reduced, theta, dt, &vec![0.0; model.dof_count()]).unwrap()
+}
+
 fn load_on(model: &Model, faces: &[Face], t: f64) -> Vec<f64> {
     let mut load = vec![0.0; model.dof_count()];
     for (k, n) in faces.iter().flat_map(|f| f.nodes()).enumerate() {
@@ -54,18 +58,19 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 fn surface_condensation_is_statically_exact() {
     let model = block(Rayleigh { alpha_m: 4000.0, beta_k: 0.0 }, Vec::new());
     let faces = top(&model);
-    let reduced = ReducedModel::new(&model, &faces, Reduction::Surface { modes: 0 }).unwrap();
+    let reduced = ReducedModel::new(&model, &faces, &faces, Reduction::Surface { modes: 0 }).unwrap();
     let e = *reduced.estimate();
     println!("{e}");
     assert!(e.pressure.abs() < 1e-9 && e.point.iter().all(|p| p.abs() < 1e-9), "{e:?}");
     assert_eq!((e.dofs, e.shapes), (model.free_dof_count(), 3 * 40));
     let load = load_on(&model, &faces, 0.0);
     let rest = StaticSolver::new(&model).unwrap().solve(&model, &load).unwrap().u;
-    let mut solver = ReducedTheta::new(&model, Arc::new(reduced), 1.0, 1.0).unwrap();
+    let mut solver = stepper(&model, Arc::new(reduced), 1.0, 1.0);
     let mut state = State::new(&model);
     for _ in 0..400 {
         solver.step(&model, &mut state, &load).unwrap();
     }
+    solver.recover(&mut state);
     println!("static displacement {:.1e} off", difference(&state.u, &rest));
     assert!(difference(&state.u, &rest) < 1e-8);
 }
@@ -74,7 +79,8 @@ fn surface_condensation_is_statically_exact() {
 fn motion_in_span_matches_full_solid() {
     let model = block(Rayleigh { alpha_m: 30.0, beta_k: 2e-4 }, Vec::new());
     let faces = top(&model);
-    let reduced = Arc::new(ReducedModel::new(&model, &faces, Reduction::Modes { modes: 12 }).unwrap());
+    let reduced =
+        Arc::new(ReducedModel::new(&model, &faces, &faces, Reduction::Modes { modes: 12 }).unwrap());
     let modes = crate::modal::solve(&model, 12).unwrap();
     let mut pushed = vec![0.0; model.dof_count()];
     model.mass_times(&modes.shapes[7], &mut pushed);
@@ -85,7 +91,7 @@ fn motion_in_span_matches_full_solid() {
     let start = StaticSolver::new(&model).unwrap().solve(&model, &dead).unwrap().u;
     for theta in [0.5, 0.8] {
         let mut full = ThetaSolver::new(&model, theta, 1e-3).unwrap();
-        let mut few = ReducedTheta::new(&model, reduced.clone(), theta, 1e-3).unwrap();
+        let mut few = stepper(&model, reduced.clone(), theta, 1e-3);
         let (mut a, mut b) = (State::new(&model), State::new(&model));
         a.u.copy_from_slice(&start);
         b.u.copy_from_slice(&start);
@@ -102,6 +108,7 @@ fn motion_in_span_matches_full_solid() {
                     <= 1e-7 * p.numerical_dissipation + 1e-15
             );
         }
+        few.recover(&mut b);
         println!("theta {theta}: u {:.1e}, v {:.1e} off", difference(&b.u, &a.u), difference(&b.v, &a.v));
         assert!(difference(&b.u, &a.u) < 1e-7 && difference(&b.v, &a.v) < 1e-7);
     }
@@ -126,8 +133,8 @@ fn energy_balances_in_the_span() {
         (Reduction::Modes { modes: 20 }, 0.5),
         (Reduction::Modes { modes: 20 }, 0.7),
     ] {
-        let reduced = Arc::new(ReducedModel::new(&model, &faces, reduction).unwrap());
-        let mut solver = ReducedTheta::new(&model, reduced, theta, 1e-3).unwrap();
+        let reduced = Arc::new(ReducedModel::new(&model, &faces, &faces, reduction).unwrap());
+        let mut solver = stepper(&model, reduced, theta, 1e-3);
         let mut state = State::new(&model);
         let total = |s: &State| energy::kinetic(&model, s) + energy::strain(&model, s);
         let (mut balance, mut work, mut absorbed) = (0.0, 0.0, 0.0);
@@ -139,6 +146,9 @@ fn energy_balances_in_the_span() {
             work += a.external_work.abs();
             absorbed += a.boundary_dissipation;
         }
+        let stored = solver.stored(&state).unwrap();
+        solver.recover(&mut state);
+        assert!((stored.kinetic + stored.strain - total(&state)).abs() < 1e-11 * work);
         println!("{reduction:?}: balance {:.1e} of the work", (balance - total(&state)) / work);
         assert!((balance - total(&state)).abs() < 1e-11 * work);
         assert!(absorbed > 0.0);
@@ -158,7 +168,8 @@ fn estimate_matches_run() {
         .unwrap();
     let mut last = 1.0;
     for modes in [5, 40, 120] {
-        let reduced = Arc::new(ReducedModel::new(&model, &faces, Reduction::Modes { modes }).unwrap());
+        let reduced =
+            Arc::new(ReducedModel::new(&model, &faces, &faces, Reduction::Modes { modes }).unwrap());
         let e = *reduced.estimate();
         println!("{e}");
         assert!(e.pressure.abs() < 1e-9, "the pressure is one of the shapes");
@@ -167,7 +178,7 @@ fn estimate_matches_run() {
         let mut load = vec![0.0; model.dof_count()];
         crate::loads::face_point_load(&faces[middle], [0.0, 0.0], [0.0, 0.0, -1.0], &mut load);
         let rest = StaticSolver::new(&model).unwrap().solve(&model, &load).unwrap().u;
-        let mut solver = ReducedTheta::new(&model, reduced, 1.0, 1.0).unwrap();
+        let mut solver = stepper(&model, reduced, 1.0, 1.0);
         let mut state = State::new(&model);
         for _ in 0..400 {
             solver.step(&model, &mut state, &load).unwrap();
@@ -179,18 +190,54 @@ fn estimate_matches_run() {
     }
 }
 
+/// The static answer to the unbalanced forces is the error of slow motion, in displacement and energy.
+#[test]
+fn unbalanced_forces_show_error() {
+    let model = block(Rayleigh { alpha_m: 40.0, beta_k: 1e-3 }, Vec::new());
+    let faces = top(&model);
+    let reduced = Arc::new(ReducedModel::new(&model, &faces, &faces, Reduction::Modes { modes: 5 }).unwrap());
+    let (theta, dt) = (0.6, 2e-3);
+    let mut full = ThetaSolver::new(&model, theta, dt).unwrap();
+    let mut few = stepper(&model, reduced, theta, dt);
+    let (mut a, mut b) = (State::new(&model), State::new(&model));
+    let mut statics = StaticSolver::new(&model).unwrap();
+    let mut found = FoundError::default();
+    let (mut off, mut largest, mut energies) = (0.0_f64, 0.0_f64, [0.0_f64; 2]);
+    let energy = |u: &[f64]| 0.5 * model.matrices().stiffness_form(u);
+    for step in 0..200 {
+        // A slow load of uneven forces.
+        let rise = (f64::from(step) / 100.0).min(1.0);
+        let load: Vec<f64> = load_on(&model, &faces, 0.0).iter().map(|f| f * rise).collect();
+        full.step(&model, &mut a, &load).unwrap();
+        few.step(&model, &mut b, &load).unwrap();
+        if step % 20 == 19 {
+            let out = few.out_of_balance(&model, &b, &load).unwrap();
+            found.add(&model, &mut statics, &out).unwrap();
+            few.recover(&mut b);
+            let error: Vec<f64> = a.u.iter().zip(&b.u).map(|(a, b)| a - b).collect();
+            off = error.iter().fold(off, |m, x| m.max(x.abs()));
+            largest = a.u.iter().fold(largest, |m, x| m.max(x.abs()));
+            energies = [energies[0].max(energy(&error)), energies[1].max(energy(&a.u))];
+        }
+    }
+    let (shown, stress) = (off / largest, (energies[0] / energies[1]).sqrt());
+    println!("displacement {shown:.3}, stress {stress:.3}; found {found:?}");
+    assert!(shown > 0.05 && (found.of_displacement() / shown - 1.0).abs() < 0.1);
+    assert!((found.of_stress() / stress - 1.0).abs() < 0.1);
+}
+
 #[test]
 fn what_cannot_be_reduced_is_refused() {
     let model = block(Rayleigh::default(), Vec::new());
     let faces = top(&model);
     assert!(matches!(
-        ReducedModel::new(&model, &faces, Reduction::Modes { modes: 0 }),
+        ReducedModel::new(&model, &faces, &faces, Reduction::Modes { modes: 0 }),
         Err(ReductionError::NoModes)
     ));
     assert!(matches!(
-        ReducedModel::new(&model, &[], Reduction::Surface { modes: 0 }),
+        ReducedModel::new(&model, &[], &[], Reduction::Surface { modes: 0 }),
         Err(ReductionError::NoSurface)
     ));
-    let many = ReducedModel::new(&model, &faces, Reduction::Modes { modes: 5000 });
+    let many = ReducedModel::new(&model, &faces, &faces, Reduction::Modes { modes: 5000 });
     assert!(matches!(many, Err(ReductionError::TooMany { shapes: 5012, .. })), "{many:?}");
 }

@@ -12,7 +12,7 @@ fn fma<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
 macro_rules! kernel {
     ($(#[$doc:meta])* $name:ident = $body:ident($($argument:ident: $type:ty),*)) => {
         $(#[$doc])*
-        pub(super) fn $name<const K: usize>($($argument: $type),*) {
+        pub(crate) fn $name<const K: usize>($($argument: $type),*) {
             #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]
             {
                 #[target_feature(enable = "avx512f,avx2,fma")]

@@ -4,7 +4,7 @@ pub mod conjugate;
 mod dense;
 mod front;
 pub mod gmres;
-mod kernels;
+pub(crate) mod kernels;
 pub mod multifrontal;
 pub mod mumps;
 mod pattern;

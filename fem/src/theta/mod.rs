@@ -11,6 +11,7 @@ pub use reduced::ReducedTheta;
 use crate::error::SolveError;
 use crate::integrator::{Conditions, Loading, OnStep, StepReport, TimeIntegrator, steps_of};
 use crate::model::Model;
+use crate::reduction::OutOfBalance;
 use crate::state::{State, StepAudit};
 
 /// θ-method of one window length; as [`TimeIntegrator`] it averages the loads at both ends.
@@ -43,6 +44,23 @@ pub trait ThetaMethod: TimeIntegrator {
         self.step_prescribed(model, state, mean_load, None)
     }
 
+    /// Lists dofs with a load [N] among those whose motion each step of a reduced body writes to `state`, the
+    /// contact surface and others that carried loads.
+    fn keep_current(&mut self, _model: &Model, _state: &mut State, _load: &[f64]) {}
+
+    /// Writes the motion of all other dofs of a reduced body to `state`.
+    fn recover(&self, _state: &mut State) {}
+
+    /// Returns energies of a reduced body, none before its first step and for others: their state has all motion.
+    fn stored(&self, _state: &State) -> Option<Stored> {
+        None
+    }
+
+    /// Returns what the basis of a reduced body left unbalanced in the last step, to `state` under this load [N].
+    fn out_of_balance(&self, _model: &Model, _state: &State, _mean_load: &[f64]) -> Option<OutOfBalance> {
+        None
+    }
+
     /// Predicts the mean velocity [m/s] with linearised contact:
     ///
     /// `contacts` adds a symmetric positive semidefinite product; shapes `[3 * nodes]`. Returns the
@@ -62,6 +80,17 @@ pub trait ThetaMethod: TimeIntegrator {
     }
 }
 
+/// Energies of a reduced body [J].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stored {
+    /// Kinetic.
+    pub kinetic: f64,
+    /// Strain energy.
+    pub strain: f64,
+    /// Work of the dead load on the displacement.
+    pub dead_load_work: f64,
+}
+
 fn integrate(
     method: &mut impl ThetaMethod,
     model: &Model,
@@ -78,6 +107,7 @@ fn integrate(
         let audit = method.step_prescribed(model, state, &conditions.loads[0], conditions.prescribed())?;
         // Exact end time, without rounding of the sum.
         state.time = ends[1];
+        method.recover(state);
         let report = method.report();
         report.time = ends[1];
         on_step(state, report, Some(&audit));

@@ -59,8 +59,8 @@ fn reduced(model: &Model) -> ReducedTheta {
     let (mesh, modes) = (model.mesh(), Reduction::Modes { modes: 12 });
     let faces = mesh.boundary_faces();
     let top: Vec<_> = faces.into_iter().filter(|f| f.centre(mesh)[2] == LENGTH).collect();
-    let shapes = Arc::new(ReducedModel::new(model, &top, modes).unwrap());
-    ReducedTheta::new(model, shapes, 0.5, DT).unwrap()
+    let shapes = Arc::new(ReducedModel::new(model, &top, &top, modes).unwrap());
+    ReducedTheta::new(model, shapes, 0.5, DT, &vec![0.0; model.dof_count()]).unwrap()
 }
 
 /// Top deflection per step, final state, and summed energy balance.

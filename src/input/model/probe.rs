@@ -29,6 +29,13 @@ pub enum Observed {
     Region(BoxRegion),
 }
 
+impl Observed {
+    /// Whether fields of the solid are observed.
+    pub fn is_of_solid(&self) -> bool {
+        !matches!(self, Observed::Grain(_) | Observed::Group(_) | Observed::Region(_))
+    }
+}
+
 pub(super) fn probes(
     scene: &Table<Scene>,
     solid: Option<&SolidPart>,

@@ -176,7 +176,9 @@ fn left(
     if let Some(solid) = &job.solid
         && let Some((window, theta)) = window(job, grains, ground.as_ref())
     {
-        seconds += job.end / window * solid::step(solid, theta, window)?;
+        let (windows, step) = (job.end / window, solid::step(solid, theta, window)?);
+        seconds +=
+            step * ground.as_ref().map_or(windows, |ground| solid::steps(solid, ground, grains, windows));
     }
     stages.push(expected(RUN, seconds));
     Ok(stages)

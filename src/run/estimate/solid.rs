@@ -2,12 +2,16 @@
 
 use super::clock::Clock;
 use super::{Known, StageTime};
+use crate::stages::reduction;
 use crate::{Prediction, initial};
 use nalgebra::DMatrix;
 use std::time::{Duration, Instant};
+use trackbed_coupling::surface::SolidSurface;
+use trackbed_fem::mesh::Face;
 use trackbed_fem::theta::{NonlinearTheta, ThetaMethod, ThetaSolver};
 use trackbed_fem::{Method, Model, SolveError, State};
 use trackbed_input::model::Job;
+use trackbed_input::model::grains::GrainsPart;
 use trackbed_input::model::solid::{Analysis, SolidPart};
 use trackbed_io::failure::Failure;
 
@@ -37,6 +41,23 @@ pub fn step(part: &SolidPart, theta: f64, dt: f64) -> Result<f64, Failure> {
         load.iter_mut().zip(&gravity).for_each(|(l, g)| *l = factor * g);
         solver.step(model, &mut state, &load).map(drop).map_err(failure)
     })
+}
+
+/// Steps of the full solid in the time of as many `windows`, less if a reduced basis is used; grains load the faces below and
+/// between their first places.
+pub fn steps(part: &SolidPart, ground: &SolidSurface, grains: &GrainsPart, windows: f64) -> f64 {
+    let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+    for body in &grains.groups.bodies {
+        for d in 0..2 {
+            ends[d] = [ends[d][0].min(body.position[d]), ends[d][1].max(body.position[d])];
+        }
+    }
+    let below = |face: &&Face| {
+        let centre = face.centre(part.model.mesh());
+        (0..2).all(|d| (ends[d][0]..=ends[d][1]).contains(&centre[d]))
+    };
+    let loaded: Vec<Face> = ground.faces().iter().filter(below).cloned().collect();
+    reduction::full_steps(part, ground.faces(), &loaded, windows)
 }
 
 /// Longer static solves are not run [s].

@@ -227,6 +227,9 @@ impl<'a> Results<'a> {
         }
         let sleeper = track.observed().and_then(|k| track.sleeper(k, time, system));
         let (Some(cycles), Some(s)) = (&mut self.course.cycles, sleeper) else { return Ok(None) };
+        if !self.stresses.is_empty() && cycles.counts(time, system.window()) {
+            system.recover();
+        }
         if let Some(view) = system.solid()
             && !self.stresses.is_empty()
             && cycles.counts(time, system.window())

@@ -21,6 +21,8 @@ pub(super) struct Cadence {
     pub tail: u64,
     /// Whether cycles are jumped over; steps then measure no progress.
     pub jumps: bool,
+    /// Whether history rows read the motion inside the solid.
+    pub reads_solid: bool,
 }
 
 impl Cadence {
@@ -46,6 +48,8 @@ impl Cadence {
             checked: every(job.end / CHECKS),
             tail: load.map_or(0, |l| (((job.end - l.end()) / window).ceil() as u64).min(windows)),
             jumps,
+            reads_solid: job.probes.iter().any(|(_, observed)| observed.is_of_solid())
+                || job.solid.as_ref().is_some_and(|part| !part.supports.named.is_empty()),
         }
     }
 

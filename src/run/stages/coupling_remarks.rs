@@ -1,6 +1,6 @@
 //! Final coupling warnings.
 
-use crate::summary::CouplingRecord;
+use crate::summary::{CouplingRecord, ReductionRecord};
 use crate::system::CoupledSystem;
 use trackbed_coupling::energy_balance::WorkAndDissipation;
 use trackbed_coupling::interface_stability::InterfaceStabilityNumbers;
@@ -30,6 +30,20 @@ pub fn late(spent: &WorkAndDissipation) -> Option<String> {
             "coupling: interface dashpot error {:.3e} J, {:.1} % of the reference energy. Dashpots at the solid surface act on its velocity at the start of a window. Reduce coupling.substeps, or set coupling.theta above 0.5.",
             -spent.interface_dashpot_error,
             100.0 * part
+        )
+    })
+}
+
+/// Largest errors of a reduced solid that pass without a warning: of displacements, of the stress.
+const REDUCED: [f64; 2] = [0.01, 0.1];
+
+/// Warns about a reduced solid that deviates from the full one.
+pub fn inaccurate_reduction(found: &ReductionRecord) -> Option<String> {
+    let errors = [found.displacement, found.stress];
+    errors.iter().zip(REDUCED).any(|(error, limit)| *error > limit).then(|| {
+        let [displacement, stress] = errors.map(|e| 100.0 * e);
+        format!(
+            "solid.reduction: error of displacements {displacement:.2} %, of the stress {stress:.2} % of their largest. Set kind = \"surface\", or more modes."
         )
     })
 }

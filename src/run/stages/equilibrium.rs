@@ -1,6 +1,7 @@
 //! Coupling of grains and solid in equilibrium.
 
 use super::carried::Carried;
+use super::reduction;
 use super::stage::{CoupledRun, RunState, Stage};
 use crate::checkpoint::Loaded;
 use crate::context::Run;
@@ -9,7 +10,6 @@ use crate::from::END;
 use crate::initial;
 use crate::summary::{CouplingRecord, Summary};
 use crate::system::{CoupledSystem, Meshed, SavedCoupling};
-use std::sync::Arc;
 use trackbed_coupling as coupling;
 use trackbed_coupling::scheme::Scheme;
 use trackbed_coupling::surface::SolidSurface;
@@ -79,6 +79,7 @@ impl Stage for Equilibrium {
             passes: Default::default(),
             interface_work_error: 0.0,
             transfer_kind,
+            reduction: None,
         });
         state.coupled = Some(CoupledRun { system, solid, lowest });
         Ok(())
@@ -102,7 +103,7 @@ fn couple<'b>(
     let solid = body.part;
     let dead_load = solid.dead_load(body.model);
     let Bed { model: grains, start, carried } = bed;
-    let (reference, memory, state, seat_work) = match resumed {
+    let (reference, memory, mut state, seat_work) = match resumed {
         Some(loaded) => {
             let SavedCoupling { reference, memory, state, seat_work } = saved(loaded)?;
             (reference.into_owned(), memory, state.into_owned(), seat_work)
@@ -138,7 +139,7 @@ fn couple<'b>(
     let mut work = coupling::step::Work::with_back_end(&model, &state, surface, steps)
         .and_then(|mut work| work.restore(&model, memory.as_ref()).map(|()| work))
         .map_err(|e| solid.failure(&e))?;
-    reduce(run, solid, &model, &mut work, summary)?;
+    reduction::reduce(run, solid, (&model, &mut state), &mut work, summary)?;
     summary.model.solid_step = Some(model.window());
     progress.finish("solid in equilibrium with its weight and the bed, matrix factorized");
     let seats = solid.sleepers.as_ref().map(|bodies| Meshed {
@@ -159,35 +160,6 @@ fn couple<'b>(
         ground_faces: plan.ground_faces,
         seats,
     })
-}
-
-fn reduce(
-    run: &Run<'_>,
-    solid: &SolidPart,
-    model: &coupling::step::Model<'_>,
-    work: &mut coupling::step::Work<Steps>,
-    summary: &mut Summary,
-) -> Result<(), Failure> {
-    let Some(reduction) = solid.reduction else { return Ok(()) };
-    let cost = fem::reduction::ReducedModel::cost(model.solid, work.surface.faces(), reduction);
-    let slower = cost.ok().filter(|c| c.reduced > c.full).map(|c| {
-        format!(
-            "solid.reduction: {} modes make an FEM step about {:.1}× slower ({:.1} instead of {:.1} million numbers read). Remove it, or set kind = \"modes\".",
-            c.shapes,
-            c.reduced / c.full,
-            1e-6 * c.reduced,
-            1e-6 * c.full
-        )
-    });
-    if run.verbosity > Verbosity::Quiet {
-        slower.iter().for_each(|r| message::warn(r));
-    }
-    summary.warnings.extend(slower);
-    let reduced = fem::reduction::ReducedModel::new(model.solid, work.surface.faces(), reduction)
-        .map_err(|e| Failure::from(run.document.error("solid.reduction", e.to_string(), "another choice")))?;
-    work.reduce(model, Arc::new(reduced)).map_err(|e| solid.failure(&e))?;
-    summary.model.reduction = work.reduction();
-    Ok(())
 }
 
 /// Reads a checkpoint. The end of another run restarts the balances.

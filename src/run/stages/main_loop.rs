@@ -1,6 +1,6 @@
 //! Main loop of grains and solid under load.
 
-use super::coupling_remarks::{late, unconverged, unstable_interface};
+use super::coupling_remarks::{inaccurate_reduction, late, unconverged, unstable_interface};
 use super::solid_loop::solid_alone;
 use super::stage::{CoupledRun, GrainTime, GrainsState, RUN, RunState, Stage, Steps, planes};
 use super::{statics, time_loop};
@@ -104,12 +104,15 @@ fn coupled_loop(run: &Run<'_>, state: &mut RunState<'_>, coupled: CoupledRun<'_>
     let grains = state.grains.as_ref().expect("a run with grains");
     let (resumed, summary) = (state.loaded.take(), &mut state.summary);
     let outcome = time_loop::with_grains(run, &mut system, grains, resumed, summary);
+    system.recover();
     if let Some(record) = &mut summary.coupling {
         record.transfer = system.state.audit;
         record.passes = system.state.passes;
         record.interface_work_error = system.spent().interface();
         record.interface = system.state.interface_check.largest;
         record.division = system.model.division;
+        record.reduction = system.work.reduction().map(|_| (&system.state.reduction).into());
+        summary.warnings.extend(record.reduction.as_ref().and_then(inaccurate_reduction));
         let plan = run.job.coupling.as_ref();
         summary.warnings.extend(plan.and_then(|plan| unstable_interface(&system, record, plan)));
     }

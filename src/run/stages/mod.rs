@@ -10,6 +10,7 @@ mod finished_bed;
 mod growth;
 mod layers;
 mod main_loop;
+pub mod reduction;
 mod set_down;
 mod settling;
 mod solid_loop;

@@ -223,6 +223,9 @@ impl<'a> TimeLoop<'a> {
             self.recorder.measure(system, &self.track);
         }
         if row {
+            if self.cadence.reads_solid {
+                system.recover();
+            }
             self.row(time, system).map_err(|e| e.at(time))?;
         }
         if check {
@@ -231,7 +234,12 @@ impl<'a> TimeLoop<'a> {
         self.place.done = k;
         let (reached, whole) = share(&self.cadence, &self.recorder, &self.place);
         let next = self.cadence.frame_after(self.place.next_frame, reached, whole);
-        if next.is_some() || self.cadence.has_extra_frame(k) {
+        let frame = next.is_some() || self.cadence.has_extra_frame(k);
+        if frame || k == self.place.windows {
+            system.recover();
+            system.examine().map_err(|e| e.at(time))?;
+        }
+        if frame {
             self.recorder.frame(time, system, &self.track).map_err(|e| e.at(time))?;
             self.place.next_frame = next.unwrap_or(self.place.next_frame);
         }
@@ -239,6 +247,9 @@ impl<'a> TimeLoop<'a> {
             self.progress.message(text);
         }
         self.progress.at(reached as f64, || details(system, time, k, self.run.verbosity));
+        if self.run.accompanied.0.is_some() {
+            system.recover();
+        }
         self.show(system)?;
         if k == self.place.windows { Ok(()) } else { self.keep(time, system) }
     }

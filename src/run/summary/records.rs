@@ -156,6 +156,30 @@ pub struct CouplingRecord {
     pub interface_work_error: f64,
     /// Load transfer method.
     pub transfer_kind: String,
+    /// Errors of a reduced solid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reduction: Option<ReductionRecord>,
+}
+
+/// Largest errors of a reduced solid, found at frames: static answers to its unbalanced forces.
+#[derive(Debug, Serialize)]
+pub struct ReductionRecord {
+    /// Windows examined.
+    pub windows: u64,
+    /// Of a displacement, over the largest displacement since the start.
+    pub displacement: f64,
+    /// Of the stress, over the largest stress since the start, in the energy norm.
+    pub stress: f64,
+}
+
+impl From<&trackbed_fem::reduction::FoundError> for ReductionRecord {
+    fn from(found: &trackbed_fem::reduction::FoundError) -> ReductionRecord {
+        ReductionRecord {
+            windows: found.steps,
+            displacement: found.of_displacement(),
+            stress: found.of_stress(),
+        }
+    }
 }
 
 /// Static equilibrium.

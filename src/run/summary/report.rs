@@ -163,6 +163,12 @@ impl Summary {
                 ));
                 lines.extend(c.stability_lines());
             }
+            if let Some(found) = &c.reduction {
+                lines.push(format!(
+                    "reduced solid: error of displacements {:.2e}, of the stress {:.2e} (of their largest, {} windows)",
+                    found.displacement, found.stress, found.windows
+                ));
+            }
             if matches!(c.scheme, Scheme::Iterated { .. }) && c.passes.windows > 0 {
                 lines.push(format!(
                     "  {:.2} passes per window, {} windows not converged",

@@ -171,6 +171,7 @@ mod tests {
                 passes: IterationStats { windows: 9, passes: 9, unconverged, solves: 0 },
                 interface_work_error: 0.0,
                 transfer_kind: String::new(),
+                reduction: None,
             }),
             ..Summary::default()
         };

@@ -92,7 +92,14 @@ impl CoupledSystem<'_> {
         seat_work: f64,
         body: &mut Body<'_>,
     ) -> io::Result<()> {
-        let (reference, state) = (Cow::Borrowed(&self.model.reference[..]), Cow::Borrowed(&self.state));
+        let reference = Cow::Borrowed(&self.model.reference[..]);
+        let state = if self.work.reduction().is_some() {
+            let mut whole = self.state.clone();
+            self.work.recover(&mut whole.solid);
+            Cow::Owned(whole)
+        } else {
+            Cow::Borrowed(&self.state)
+        };
         body.put(&SavedCoupling { reference, memory, state, seat_work })
     }
 }
@@ -181,7 +188,17 @@ impl System for CoupledSystem<'_> {
     }
 
     fn stored(&self) -> StoredEnergy {
-        coupling::step::stored_energy(&self.model, &self.state)
+        self.work.stored_energy(&self.model, &self.state)
+    }
+
+    fn recover(&mut self) {
+        self.work.recover(&mut self.state.solid);
+    }
+
+    fn examine(&mut self) -> Result<(), Failure> {
+        self.work
+            .find_reduction_error(&self.model, &mut self.state)
+            .map_err(|e| Failure::Numerical(format!("error of the reduced solid: {e}")))
     }
 
     fn spent(&self) -> WorkAndDissipation {

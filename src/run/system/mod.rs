@@ -64,7 +64,16 @@ pub trait System: TrackSystem {
     fn reference_energy(&self) -> f64 {
         self.grains().map_or(0.0, |g| dem::measure::reference_energy(g.model, g.state))
     }
-    /// Returns the solid, if any.
+    /// Completes the motion of a reduced solid; windows compute only its contact surface.
+    fn recover(&mut self) {}
+    /// Makes checks that are too expensive for every window.
+    ///
+    /// # Errors
+    /// Values not finite.
+    fn examine(&mut self) -> Result<(), Failure> {
+        Ok(())
+    }
+    /// Returns the solid, if any; see [`System::recover`].
     fn solid(&self) -> Option<SolidView<'_>> {
         None
     }

@@ -39,7 +39,7 @@ pub struct Rayleigh {
 pub struct Reduction {
     /// Basis of the model.
     pub kind: ReductionKind,
-    /// Natural modes; default 0 (surface), 60 (modes); ≤ 1000 with static shapes, ≤ half the dofs.
+    /// Natural modes; default 60; ≤ 2000 with static shapes, ≤ half the dofs.
     pub modes: Option<usize>,
 }
 
@@ -47,7 +47,7 @@ pub struct Reduction {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ReductionKind {
-    /// Dofs of the contact surface, exact for slow loads.
+    /// Dofs of the surface near grains, exact for slow loads, and slowest modes.
     Surface,
     /// Slowest modes with static corrections.
     Modes,

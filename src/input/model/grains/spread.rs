@@ -148,7 +148,7 @@ mod tests {
         near(quantile(Spread::Weibull { modulus: 3.0 }, 0.5), 0.884997, 1e-6);
     }
 
-    /// Deviation between 16 classes over that of the distribution: from the means of a normal distribution between quantiles a < b,
+    /// Deviation between 16 classes over the whole deviation: from the means of a normal distribution between quantiles a < b,
     /// 16 (φ(a) − φ(b)); for Weibull by two million quantiles.
     #[test]
     fn classes_keep_mean_and_deviation() {

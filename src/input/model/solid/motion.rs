@@ -4,6 +4,9 @@ use crate::scene::solid::{Rayleigh, ReductionKind, Solid};
 use crate::scene::{SceneError, Table};
 use trackbed_fem as fem;
 
+/// Natural modes of a reduced solid.
+const MODES: usize = 60;
+
 /// Rejected if useless or unused.
 pub(super) fn reduction(
     solid: &Table<Solid>,
@@ -20,14 +23,11 @@ pub(super) fn reduction(
     if !coupled {
         return Err(solid.no_effect("reduction", "[[grains]]"));
     }
-    match (r.kind, r.modes) {
-        (ReductionKind::Surface, modes) => {
-            Ok(Some(fem::reduction::Reduction::Surface { modes: modes.unwrap_or(0) }))
-        }
-        (ReductionKind::Modes, Some(0)) => Err(solid.error("reduction.modes", "0", "1 or more")),
-        (ReductionKind::Modes, modes) => {
-            Ok(Some(fem::reduction::Reduction::Modes { modes: modes.unwrap_or(60) }))
-        }
+    let modes = r.modes.unwrap_or(MODES);
+    match r.kind {
+        ReductionKind::Surface => Ok(Some(fem::reduction::Reduction::Surface { modes })),
+        ReductionKind::Modes if modes == 0 => Err(solid.error("reduction.modes", "0", "1 or more")),
+        ReductionKind::Modes => Ok(Some(fem::reduction::Reduction::Modes { modes })),
     }
 }
 

@@ -217,6 +217,28 @@ impl RailPlan {
     }
 }
 
+/// Height that the seats of each sleeper lack for the rail [m]; 0 for all but hanging ones.
+///
+/// # Errors
+/// Input errors.
+pub fn gaps(track: &Table<TrackTable>, count: usize) -> Result<Vec<f64>, SceneError> {
+    let mut gaps = vec![0.0; count];
+    let Some(rail) = track.optional("rail", &track.rail) else { return Ok(gaps) };
+    for row in rail.rows("hanging", &rail.hanging) {
+        let gap = row.gap.si;
+        row.check("gap", gap, |g| g > 0.0 && g <= LARGEST_GAP, "above 0, at most 50 mm")?;
+        match (row.sleeper as usize).checked_sub(1).and_then(|k| gaps.get_mut(k)) {
+            Some(own) if *own == 0.0 => *own = gap,
+            Some(_) => return Err(row.error("sleeper", row.sleeper.to_string(), "each sleeper once")),
+            None => return Err(row.error("sleeper", row.sleeper.to_string(), format!("1 to {count}"))),
+        }
+    }
+    Ok(gaps)
+}
+
+/// Largest gap below a hanging sleeper [m].
+const LARGEST_GAP: f64 = 0.05;
+
 /// Resolves the rail, one per seat.
 ///
 /// # Errors
@@ -243,6 +265,7 @@ pub fn rail(track: &Table<TrackTable>, r: &Table<RailTable>) -> Result<RailPlan,
         ("foundation_damping", r.foundation_damping.is_some(), false),
         ("extension", r.extension.is_some(), true),
         ("elements", r.elements.is_some(), false),
+        ("hanging", !r.hanging.is_empty(), false),
     ] {
         if beam && needed && !present {
             return Err(r.missing(name, "a value for a beam"));

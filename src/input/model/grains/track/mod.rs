@@ -56,7 +56,8 @@ pub(super) fn build(
         part.rail = Some(RailInput { gravity: -gravity.z, ..*input });
     }
     let (held, axis) = (sleeper::held(s), s.along.axis());
-    let row = SleeperRow { meshed, mass, held, half, axis, centres, seats };
+    let gaps = plan::gaps(track, centres.len())?;
+    let row = SleeperRow { meshed, mass, held, half, axis, centres, seats, gaps };
     part.sleeper = Some(SleeperPlan { shape, material, row });
     part.after = after::build(track, &part, fixed)?;
     Ok(part)
