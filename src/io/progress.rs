@@ -131,7 +131,7 @@ impl Progress {
     }
 
     /// Ends the stage with a permanent line; returns its seconds.
-    pub fn finish(self, text: &str) -> f64 {
+    pub fn finish(&self, text: &str) -> f64 {
         let seconds = self.seconds();
         self.bar.finish_and_clear();
         if self.verbosity > Verbosity::Quiet {

@@ -2,14 +2,41 @@
 
 use super::checkpoint_store::CheckpointStore;
 use super::packing::StageEnergy;
+use std::cell::RefCell;
+use std::rc::Rc;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::{BackEnd, BodyInput};
 use trackbed_input::model::grains::DepositionPlan;
 use trackbed_io::failure::Failure;
+use trackbed_io::progress::Progress;
 
 /// Acceleration time before low speed means rest [s].
 const START: f64 = 0.02;
+
+/// Progress over the beds of a stage, in time [s].
+#[derive(Clone)]
+pub struct BedProgress(Rc<RefCell<(Progress, f64)>>);
+
+impl BedProgress {
+    /// From time 0.
+    pub fn new(progress: Progress) -> BedProgress {
+        BedProgress(Rc::new(RefCell::new((progress, 0.0))))
+    }
+
+    fn advance(&self, state: &dem::State) {
+        let (progress, done) = &mut *self.0.borrow_mut();
+        *done += state.last_dt();
+        if passed(state, 1e-3) {
+            progress.at(*done, || format!("t = {:.4} s", state.time));
+        }
+    }
+
+    /// Ends the stage with a message; returns its time [s].
+    pub fn finish(&self, message: &str) -> f64 {
+        self.0.borrow_mut().0.finish(message)
+    }
+}
 
 /// Grains with surrounding walls and rigid solid.
 pub struct Bed<'a> {
@@ -21,6 +48,7 @@ pub struct Bed<'a> {
     surface: Option<&'a SolidSurface>,
     checkpoints: &'a CheckpointStore,
     doing: &'static str,
+    progress: Option<BedProgress>,
 }
 
 impl<'a> Bed<'a> {
@@ -33,7 +61,13 @@ impl<'a> Bed<'a> {
     ) -> Bed<'a> {
         let state = dem::State::new(&model);
         let work = dem::Work::new(&model, &state);
-        Bed { model, state, work, surface, checkpoints, doing }
+        Bed { model, state, work, surface, checkpoints, doing, progress: None }
+    }
+
+    /// Shows the progress of steps.
+    #[must_use]
+    pub fn shown(self, progress: &BedProgress) -> Bed<'a> {
+        Bed { progress: Some(progress.clone()), ..self }
     }
 
     /// Advances one step under forces.
@@ -50,6 +84,7 @@ impl<'a> Bed<'a> {
         // Every step of a bed is observed.
         .and_then(|()| work.download(model, state))
         .map_err(|e| Failure::Numerical(format!("{}: {}", self.doing, model.name_objects(&e))))?;
+        self.progress.iter().for_each(|p| p.advance(&self.state));
         self.checkpoints.check(self.doing, self.state.time)
     }
 

@@ -2,7 +2,7 @@
 
 use super::bedding::{self, Poured};
 use super::stage::{GrainTime, Packed, RunState, Settled, Stage};
-use crate::bed::{Bed, rms_speed, top_below};
+use crate::bed::{Bed, BedProgress, rms_speed, top_below};
 use crate::context::Run;
 use crate::packing::{BedStage, CompactionRecord};
 use crate::summary::StageRecord;
@@ -95,8 +95,9 @@ fn compact(
     settled: &mut Settled,
 ) -> Result<(), Failure> {
     let plan = grains.packing.compaction[index].clone();
-    let progress = Progress::start("compacting", 1.0, run.verbosity);
-    let mut bed = new_bed(run, grains, &plan, settled.all(), surface)?;
+    let progress = BedProgress::new(Progress::start("compacting", longest(&plan), run.verbosity));
+    let new_bed = |grains: &GrainsPart, bodies| new_bed(run, grains, (&plan, &progress), bodies, surface);
+    let mut bed = new_bed(grains, settled.all())?;
     let before = porosity(&bed, settled.bodies.len(), &plan.region);
     let region = plan.region;
     let name = format!("compaction {}: {}", index + 1, plan.press.name());
@@ -125,14 +126,14 @@ fn compact(
         Press::Bedding { force, frequency, cycles } => {
             if settled.sleepers.is_empty() {
                 settled.sleepers = bedding::set_down(&bed, grains, surface);
-                bed = new_bed(run, grains, &plan, settled.all(), surface)?;
+                bed = new_bed(grains, settled.all())?;
             }
             bedding::press(&mut bed, settled.bodies.len(), *force, *frequency, *cycles)?;
             let rested = bed.rest(&plan.rest)?;
             Pressed { steps: bed.state.steps, bed, rested, region, wall_force: None }
         }
         Press::Pouring { parts, layers, .. } => {
-            let new = |now: &Settled| new_bed(run, grains, &plan, now.all(), surface);
+            let new = |now: &Settled| new_bed(grains, now.all());
             let poured = bedding::pour(grains, settled, (&name, parts, *layers), &plan.rest, new)?;
             let Poured { bed, before, steps, rested } = poured;
             poured_from = before;
@@ -140,7 +141,7 @@ fn compact(
         }
         Press::Tamping { .. } => {
             let start = Pressed { steps: 0, bed, rested: true, region, wall_force: None };
-            let new = |bodies: Vec<BodyInput>| new_bed(run, grains, &plan, bodies, surface);
+            let new = |bodies: Vec<BodyInput>| new_bed(grains, bodies);
             tamp(start, &plan, settled, (&name, surface), new)?
         }
     };
@@ -170,13 +171,13 @@ fn compact(
 fn new_bed<'b>(
     run: &'b Run<'_>,
     grains: &GrainsPart,
-    plan: &CompactionPlan,
+    (plan, progress): (&CompactionPlan, &BedProgress),
     bodies: Vec<BodyInput>,
     surface: Option<&'b SolidSurface>,
 ) -> Result<Bed<'b>, Failure> {
     let input = dem::ModelInput { bodies, ..grains.deposition_input(&plan.rest) };
     let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
-    Ok(Bed::new(model, surface, &run.checkpoints, COMPACTED))
+    Ok(Bed::new(model, surface, &run.checkpoints, COMPACTED).shown(progress))
 }
 
 /// Without sleepers, and grains that are removed above a level.
