@@ -175,8 +175,8 @@ impl<B: dem::BackEnd> Work<B> {
     pub fn find_reduction_error(&mut self, model: &Model<'_>, state: &mut State) -> Result<(), SolveError> {
         let Some((_, solver)) = &mut self.reduced else { return Ok(()) };
         match self.solver.out_of_balance(model.solid, &state.solid, &self.load) {
-            Some(step) if state.passes.windows > 0 => state.reduction.add(model.solid, solver, &step),
-            _ => Ok(()),
+            Some(step) => state.reduction.add(model.solid, solver, &step),
+            None => Ok(()),
         }
     }
 

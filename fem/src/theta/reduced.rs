@@ -45,6 +45,8 @@ pub struct ReducedTheta {
     next: Coordinates,
     /// −q, −q', −q'' of each shape, at the end and in the mean of the step.
     negative: [Vec<f64>; 2],
+    /// Whether there was a step.
+    stepped: bool,
 }
 
 /// Dofs with their rows of V.
@@ -131,6 +133,7 @@ impl ReducedTheta {
             right: DVector::zeros(count),
             next: Coordinates::at_rest(Vec::new(), count),
             negative: [vec![0.0; 3 * count], vec![0.0; 3 * count]],
+            stepped: false,
             reduced,
         })
     }
@@ -282,6 +285,7 @@ impl ThetaMethod for ReducedTheta {
         self.next.swap_motion(&mut state.reduced);
         state.time = time;
         self.rows.copy_to(state);
+        self.stepped = true;
         Ok(audit)
     }
 
@@ -305,7 +309,7 @@ impl ThetaMethod for ReducedTheta {
     }
 
     fn out_of_balance(&self, model: &Model, state: &State, mean_load: &[f64]) -> Option<OutOfBalance> {
-        Some(self.reduced.out_of_balance(model, state, mean_load, &self.negative[1]))
+        self.stepped.then(|| self.reduced.out_of_balance(model, state, mean_load, &self.negative[1]))
     }
 }
 

@@ -56,7 +56,7 @@ pub fn steps(part: &SolidPart, ground: &SolidSurface, grains: &GrainsPart, windo
         let centre = face.centre(part.model.mesh());
         (0..2).all(|d| (ends[d][0]..=ends[d][1]).contains(&centre[d]))
     };
-    let loaded: Vec<Face> = ground.faces().iter().filter(below).cloned().collect();
+    let loaded: Vec<Face> = ground.faces().iter().filter(below).copied().collect();
     reduction::full_steps(part, ground.faces(), &loaded, windows)
 }
 

@@ -34,7 +34,7 @@ pub fn reduce(
         state.loaded_faces = faces_near_grains(model, &state.grains, &work.surface);
     }
     let faces = work.surface.faces();
-    let loaded: Vec<Face> = state.loaded_faces.iter().map(|&f| faces[f as usize].clone()).collect();
+    let loaded: Vec<Face> = state.loaded_faces.iter().map(|&f| faces[f as usize]).collect();
     let cost = ReducedModel::cost(model.solid, faces, &loaded, reduction).ok();
     let slower = cost.filter(|c| c.reduced > c.full).map(|c| {
         format!(
