@@ -24,7 +24,10 @@ pub(super) fn add_step_energy<B>(model: &Model<'_>, state: &mut State, work: &Wo
         work.transfer.interface_dashpot_error(&work.surface, rate, last, found);
     if model.scheme != Scheme::Lagged {
         // The lagged surface velocity has no jump.
-        state.rate.clone_from(&work.rate);
+        state.rate.resize(work.rate.len(), 0.0);
+        for d in work.surface.nodes().iter().flat_map(|&n| [0, 1, 2].map(|d| 3 * n as usize + d)) {
+            state.rate[d] = work.rate[d];
+        }
     }
     state.spent.rayleigh += step.damping_dissipation;
     state.spent.absorbed += step.boundary_dissipation;

@@ -187,14 +187,18 @@ fn a_plastic_step_hears_the_interrupt() {
 fn panic_is_one_line() {
     let folder = scene_folder("fault", COUPLED);
     let scene = folder.join("scene.toml");
-    let set = ["solid.material.0.young=1e-200", "solid.reduction={ kind = \"surface\" }"];
+    // Rounding of such dashpots makes the reduced matrix indefinite.
+    let set = [
+        "solid.absorbing=[{ side = \"x-\", normal = 1e150 }]",
+        "solid.reduction={ kind = \"surface\", modes = 0 }",
+    ];
     let output =
         program(&scene, &folder.join("out"), &set).arg("--quiet").env_remove("RUST_BACKTRACE").output();
     let output = output.unwrap();
     let text = String::from_utf8(output.stderr).unwrap();
     assert_eq!((output.status.code(), text.lines().count()), (Some(3), 1), "{text}");
-    assert!(text.starts_with("error: internal error: Unable to compute"), "{text}");
-    assert!(text.contains("symmetric_tridiagonal.rs") && text.contains("please report it"), "{text}");
+    assert!(text.starts_with("error: internal error: a damped body at rest"), "{text}");
+    assert!(text.contains("reduced.rs") && text.contains("please report it"), "{text}");
     let status = json(&folder.join("out/summary.json"))["status"].as_str().unwrap().to_string();
     assert!(status.starts_with("failed: internal error"), "{status}");
 }
