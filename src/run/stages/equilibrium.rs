@@ -140,7 +140,8 @@ fn couple<'b>(
         .and_then(|mut work| work.restore(&model, memory.as_ref()).map(|()| work))
         .map_err(|e| solid.failure(&e))?;
     reduction::reduce(run, solid, (&model, &mut state), &mut work, summary)?;
-    summary.model.solid_step = Some(model.window());
+    // Undivided, also when resumed.
+    summary.model.solid_step = Some(model.grains.dt() * f64::from(model.substeps));
     progress.finish("solid in equilibrium with its weight and the bed, matrix factorized");
     let seats = solid.sleepers.as_ref().map(|bodies| Meshed {
         bodies,
