@@ -82,6 +82,14 @@ impl Coordinates {
         std::mem::swap(&mut self.acceleration, &mut other.acceleration);
     }
 
+    /// Writes −q, −q', −q'' of each shape, as the products with V take them.
+    pub(crate) fn negate_into(&self, negative: &mut [f64]) {
+        let motion = self.position.iter().zip(&self.velocity).zip(&self.acceleration);
+        for (to, ((q, v), a)) in negative.as_chunks_mut::<3>().0.iter_mut().zip(motion) {
+            *to = [-q, -v, -a];
+        }
+    }
+
     /// Copies the motion of the same solid; `rest` only if it is missing.
     pub fn copy_motion(&mut self, from: &Coordinates) {
         if self.rest.len() != from.rest.len() {

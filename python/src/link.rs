@@ -95,21 +95,22 @@ pub fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Companion for Link {
-    fn follow(&self, shown: &Shown<'_>) -> Result<(), Failure> {
-        let mut goal = locked(&self.goal);
-        let last = shown.done >= shown.windows;
-        let reached = match &mut *goal {
+    fn is_due(&self, time: f64, done: u64, windows: u64) -> bool {
+        let last = done >= windows;
+        let reached = match &mut *locked(&self.goal) {
             Goal::Windows(left) => {
                 *left = left.saturating_sub(1);
                 *left == 0 || last
             }
             // Tolerance for rounding of the summed time.
-            Goal::Time(time) => shown.time >= *time * (1.0 - 1e-12) || last,
+            Goal::Time(goal) => time >= *goal * (1.0 - 1e-12) || last,
             Goal::End => false,
         };
-        if !self.pause.swap(false, Ordering::Relaxed) && !reached {
-            return Ok(());
-        }
+        self.pause.swap(false, Ordering::Relaxed) || reached
+    }
+
+    fn follow(&self, shown: &Shown<'_>) -> Result<(), Failure> {
+        let mut goal = locked(&self.goal);
         let orders = locked(&self.orders);
         let place = Place { time: shown.time, done: shown.done, windows: shown.windows };
         // Without a receiver, a stop is requested.

@@ -27,7 +27,10 @@ pub struct Shown<'a> {
 
 /// Observer of the main loop, on its thread. Not saved in checkpoints.
 pub trait Companion: Send + Sync {
-    /// Observes the state before the first window and after each.
+    /// Whether it observes the state now, asked before the first window and after each; reading it takes time.
+    fn is_due(&self, time: f64, done: u64, windows: u64) -> bool;
+
+    /// Observes the state.
     ///
     /// # Errors
     /// Errors stop the run.

@@ -25,7 +25,7 @@ pub(super) fn add_step_energy<B>(model: &Model<'_>, state: &mut State, work: &Wo
     if model.scheme != Scheme::Lagged {
         // The lagged surface velocity has no jump.
         state.rate.resize(work.rate.len(), 0.0);
-        for d in work.surface.nodes().iter().flat_map(|&n| [0, 1, 2].map(|d| 3 * n as usize + d)) {
+        for d in work.surface.dofs() {
             state.rate[d] = work.rate[d];
         }
     }

@@ -53,7 +53,7 @@ pub fn step<B: BackEnd>(
     // The next window begins at the computed surface.
     state.correction.resize(work.rate.len(), 0.0);
     let mut jump = 0.0_f64;
-    for i in work.surface.nodes().iter().flat_map(|&n| [0, 1, 2].map(|d| 3 * n as usize + d)) {
+    for i in work.surface.dofs() {
         let moved = state.solid.u[i] - work.before.u[i];
         state.correction[i] = moved - work.rate[i] * window;
         jump = jump.max(state.correction[i].abs());
@@ -197,7 +197,7 @@ fn correct<B>(state: &State, work: &mut Work<B>) {
         return;
     }
     work.correction.resize(state.correction.len(), 0.0);
-    for i in work.surface.nodes().iter().flat_map(|&n| [0, 1, 2].map(|d| 3 * n as usize + d)) {
+    for i in work.surface.dofs() {
         work.correction[i] = state.correction[i] + (state.rate[i] - work.rate[i]) * half;
     }
 }

@@ -137,6 +137,11 @@ impl SolidSurface {
         &self.faces
     }
 
+    /// Dofs of the surface in nodal vectors of the solid, ascending.
+    pub fn dofs(&self) -> impl Iterator<Item = usize> {
+        self.nodes.iter().flat_map(|&n| [0, 1, 2].map(|d| 3 * n as usize + d))
+    }
+
     /// Solid node of each surface node, ascending.
     pub fn nodes(&self) -> &[u32] {
         &self.nodes

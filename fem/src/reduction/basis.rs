@@ -159,8 +159,8 @@ impl ReducedModel {
         if q.position.is_empty() {
             return;
         }
-        let motion = q.position.iter().zip(&q.velocity).zip(&q.acceleration);
-        let negative: Vec<f64> = motion.flat_map(|((q, v), a)| [-q, -v, -a]).collect();
+        let mut negative = vec![0.0; 3 * self.count];
+        q.negate_into(&mut negative);
         let all = self.expand(&negative);
         for (d, &[u, v, a]) in all.as_chunks::<3>().0.iter().enumerate().filter(|(d, _)| !current[*d]) {
             state.u[d] = state.reduced.rest[d] + u;

@@ -168,7 +168,7 @@ impl ReducedTheta {
         let dofs = self.rows.dofs.iter().copied().chain(missing).collect();
         self.rows = Rows::new(&self.reduced, dofs, state.u.len());
         if !state.reduced.position.is_empty() {
-            interleave(&state.reduced, &mut self.negative[0]);
+            state.reduced.negate_into(&mut self.negative[0]);
             self.rows.follow(&self.negative[0]);
             self.rows.copy_to(state);
         }
@@ -220,14 +220,6 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// −q, −q', −q'' of each shape.
-fn interleave(q: &Coordinates, negative: &mut [f64]) {
-    let motion = q.position.iter().zip(&q.velocity).zip(&q.acceleration);
-    for (to, ((q, v), a)) in negative.as_chunks_mut::<3>().0.iter_mut().zip(motion) {
-        *to = [-q, -v, -a];
-    }
-}
-
 impl ThetaMethod for ReducedTheta {
     fn dt(&self) -> f64 {
         self.dt
@@ -269,7 +261,7 @@ impl ThetaMethod for ReducedTheta {
             self.next.acceleration[k] = w / h;
             self.negative[1][3 * k..3 * k + 3].copy_from_slice(&[-(q.position[k] + h * mean), -mean, -w / h]);
         }
-        interleave(&self.next, &mut self.negative[0]);
+        self.next.negate_into(&mut self.negative[0]);
         self.rows.follow(&self.negative[0]);
         let time = state.time + dt;
         if let Some(i) = self.rows.motion.iter().position(|x| !x.is_finite()) {

@@ -247,16 +247,17 @@ impl<'a> TimeLoop<'a> {
             self.progress.message(text);
         }
         self.progress.at(reached as f64, || details(system, time, k, self.run.verbosity));
-        if self.run.accompanied.0.is_some() {
-            system.recover();
-        }
         self.show(system)?;
         if k == self.place.windows { Ok(()) } else { self.keep(time, system) }
     }
 
-    fn show<S: System>(&self, system: &S) -> Result<(), Failure> {
+    fn show<S: System>(&self, system: &mut S) -> Result<(), Failure> {
         let Some(companion) = &self.run.accompanied.0 else { return Ok(()) };
         let Place { done, windows, .. } = self.place;
+        if !companion.is_due(self.time(done), done, windows) {
+            return Ok(());
+        }
+        system.recover();
         companion.follow(&Shown {
             time: self.time(done),
             done,
