@@ -77,6 +77,8 @@ pub enum Command {
     Study(StudyArgs),
     /// Write an HTML report of one run or study, or a comparison of several runs.
     Report(ReportArgs),
+    /// Run the scene of a finished run again and compare the results, file by file.
+    Reproduce(ReproduceArgs),
     /// Run a small track, about one minute, and show it in a browser.
     Demo(DemoArgs),
     /// Create a directory with a commented example scene; without arguments, list the templates.
@@ -174,6 +176,19 @@ impl RunArgs {
             _ => Verbosity::Normal,
         }
     }
+}
+
+/// Arguments of `reproduce`.
+#[derive(Debug, Args)]
+pub struct ReproduceArgs {
+    /// Results directory of a finished run, whose scene and other input files are as they were.
+    pub results: PathBuf,
+    /// Results directory of the new run [default: RESULTS-reproduced].
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Threads; the results do not depend on it [default: all cores].
+    #[arg(long)]
+    pub threads: Option<usize>,
 }
 
 /// Arguments of `demo`.

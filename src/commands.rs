@@ -10,6 +10,7 @@ mod modal;
 mod output;
 mod render;
 mod report;
+mod reproduce;
 mod schema;
 mod stone;
 mod study;
@@ -54,6 +55,7 @@ pub fn execute(command: Command) -> Result<(), Failure> {
         Command::Demo(args) => demo::demo(args, run_scene, view::view),
         Command::Study(args) => study::study(args),
         Command::Report(args) => report::report(args),
+        Command::Reproduce(args) => reproduce::reproduce(args, run_scene),
         Command::Modal(args) => {
             note_earlier_names(&args.scene, &args.set);
             print(&modal::modal(&args)?)

@@ -162,7 +162,7 @@ def inputs():
         for file in sorted(f for f in files if f.endswith(".toml")):
             text = open(os.path.join(path, file), encoding="utf-8").read()
             tables = tomllib.loads(text)
-            scene = "scene" not in tables and ("solid" in tables or "grains" in tables)
+            scene = "scene" not in tables and "title" in tables
             yield os.path.relpath(os.path.join(path, file), folder).replace(os.sep, "/"), text, scene
 
 

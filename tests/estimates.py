@@ -39,7 +39,7 @@ def scenes():
     """Scene files in inputs/."""
     for path in sorted((ROOT / "inputs").rglob("*.toml")):
         tables = tomllib.loads(path.read_text())
-        if "scene" not in tables and ("solid" in tables or "grains" in tables):
+        if "scene" not in tables and "title" in tables:
             yield path
 
 

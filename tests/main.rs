@@ -47,6 +47,7 @@ mod suite {
     mod reference;
     mod render;
     mod report;
+    mod reproduce;
     mod runout;
     mod scenes;
     mod sheets;

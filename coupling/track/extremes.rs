@@ -2,6 +2,7 @@
 //!
 //! Theory manual: eq. (6.5).
 
+use super::rolling::RollingRecord;
 use serde::{Deserialize, Serialize};
 
 /// Rounding, over sleeper weight.
@@ -144,6 +145,9 @@ impl MomentumCheck {
 pub struct TrackRecord {
     /// In order along the track.
     pub sleepers: Vec<SleeperRecord>,
+    /// Vehicles on the rails.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vehicles: Option<RollingRecord>,
 }
 
 /// Extremes of one sleeper.
@@ -233,7 +237,7 @@ mod tests {
         assert!((lift.rise - 0.003).abs() < 1e-12 && (record.lowering - 0.002).abs() < 1e-12);
         assert_eq!((record.largest_force, record.smallest_force, record.load_share), (9.0, -2.0, Some(0.5)));
         assert_eq!((record.rail_deflection, record.bend), (None, None));
-        let text = TrackRecord { sleepers: vec![record] }.warnings().next().unwrap();
+        let text = TrackRecord { sleepers: vec![record], vehicles: None }.warnings().next().unwrap();
         assert!(text.contains("first at t = 0.100000 s"), "{text}");
     }
 }

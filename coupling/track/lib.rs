@@ -8,15 +8,18 @@ pub mod cycle_jump;
 pub mod cycles;
 pub mod extremes;
 pub mod influence;
+pub mod irregularity;
 pub mod load;
 pub mod push_test;
 pub mod rail;
 pub mod rails;
+pub mod rolling;
 pub mod row;
 pub mod settlement;
 pub mod sleepers;
 pub mod system;
 pub mod train;
+pub mod vehicle;
 
 pub use load::CyclicLoad;
 pub use row::SleeperRow;

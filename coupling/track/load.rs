@@ -231,20 +231,45 @@ impl CyclicLoad {
 
     fn wheels_with(&self, t: f64, rails: usize, axle: impl Fn(&Pass, f64, f64) -> f64, out: &mut Vec<Wheel>) {
         out.clear();
-        let (Waveform::Pass(pass), since) = (&self.waveform, t - self.cycles_begin()) else { return };
-        let AxleSpread::Beam { ends, taper } = pass.spread else { return };
-        if since < 0.0 || t >= self.end() {
-            return;
-        }
-        let t = since % self.period();
-        for [behind, force] in &pass.axles {
-            let at = pass.place(*behind, t);
-            let inside = (at - ends[0]).min(ends[1] - at);
-            if inside > 0.0 {
-                let share = if inside < taper { 0.5 * (1.0 - libm::cos(PI * inside / taper)) } else { 1.0 };
+        let Some((pass, _)) = self.passing(t) else { return };
+        for ([at, share], [_, force]) in self.axle_places(t).zip(&pass.axles) {
+            if share > 0.0 {
                 out.push(Wheel { at, force: share * axle(pass, *force, at) / rails as f64 });
             }
         }
+    }
+
+    /// Distance behind the first [m] and static force [N] of each axle.
+    pub fn axles(&self) -> &[[f64; 2]] {
+        match &self.waveform {
+            Waveform::Pass(pass) => &pass.axles,
+            _ => &[],
+        }
+    }
+
+    /// Wheels on a rail with mass at `t`, and the number of the pass from 0.
+    pub fn passing(&self, t: f64) -> Option<(&Pass, u32)> {
+        let (Waveform::Pass(pass), since) = (&self.waveform, t - self.cycles_begin()) else { return None };
+        let inside = matches!(pass.spread, AxleSpread::Beam { .. }) && since >= 0.0 && t < self.end();
+        inside.then(|| (pass, (since / self.period()) as u32))
+    }
+
+    /// Position of each axle at `t` [m], and share of its load on the rail, rising from 0 at the ends.
+    pub fn axle_places(&self, t: f64) -> impl Iterator<Item = [f64; 2]> + '_ {
+        let since = (t - self.cycles_begin()) % self.period();
+        let pass = self.passing(t).map(|p| p.0);
+        pass.into_iter().flat_map(move |pass| {
+            let (ends, taper) = match pass.spread {
+                AxleSpread::Beam { ends, taper } => (ends, taper),
+                _ => ([0.0; 2], 1.0),
+            };
+            pass.axles.iter().map(move |[behind, _]| {
+                let at = pass.place(*behind, since);
+                let inside = (at - ends[0]).min(ends[1] - at);
+                let share = if inside < taper { 0.5 * (1.0 - libm::cos(PI * inside / taper)) } else { 1.0 };
+                [at, if inside > 0.0 { share } else { 0.0 }]
+            })
+        })
     }
 
     fn in_cycles(&self, k: usize, since: f64) -> f64 {

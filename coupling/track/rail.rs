@@ -9,6 +9,7 @@
 
 use super::band::{Band, BandFactor};
 use super::beam::Element;
+use super::influence::Winkler;
 use serde::{Deserialize, Serialize};
 
 /// Rail and supports.
@@ -131,6 +132,8 @@ pub struct RailScratch {
     right: Vec<f64>,
     load: Vec<f64>,
     moved: Vec<f64>,
+    /// Accelerations without further wheels.
+    free: Vec<f64>,
 }
 
 fn factor(mass: &Band, damping: &Band, stiffness: &Band, dt: f64) -> Option<BandFactor> {
@@ -212,19 +215,48 @@ impl Rail {
         [-before, before + (self.input.sleepers - 1) as f64 * self.input.spacing]
     }
 
-    fn add_wheels(&self, wheels: &[Wheel], load: &mut [f64]) {
+    /// Unknowns and shape functions at `at` [m]; `None` beyond the ends.
+    fn shape(&self, at: f64) -> Option<[(usize, f64); 4]> {
         let e = Element {
             length: self.input.spacing / self.input.elements as f64,
             bending: self.input.bending,
             mass: self.input.mass,
         };
         let [begin, end] = self.ends();
-        for w in wheels.iter().filter(|w| w.at >= begin && w.at <= end) {
-            let along = (w.at - begin) / e.length;
-            let k = (along as usize).min(self.dofs.len() - 2);
-            let of = [self.dofs[k], self.dofs[k] + 1, self.dofs[k + 1], self.dofs[k + 1] + 1];
-            of.iter().zip(e.shape(along - k as f64)).for_each(|(&d, n)| load[d] -= w.force * n);
+        if !(at >= begin && at <= end) {
+            return None;
         }
+        let along = (at - begin) / e.length;
+        let k = (along as usize).min(self.dofs.len() - 2);
+        let of = [self.dofs[k], self.dofs[k] + 1, self.dofs[k + 1], self.dofs[k + 1] + 1];
+        let n = e.shape(along - k as f64);
+        Some(std::array::from_fn(|i| (of[i], n[i])))
+    }
+
+    fn add_wheels(&self, wheels: &[Wheel], load: &mut [f64]) {
+        for w in wheels {
+            let shape = self.shape(w.at).into_iter().flatten();
+            shape.for_each(|(d, n)| load[d] -= w.force * n);
+        }
+    }
+
+    /// Series stiffness of pad and foundation [N/m].
+    fn series(&self) -> f64 {
+        let [pad, foundation] = [self.input.pad[0], self.input.foundation[0]];
+        pad * foundation / (pad + foundation)
+    }
+
+    /// Static height of an endless rail on the foundation under equal wheels `behind` [m] each other, with its
+    /// weight [m]. Shape of the result: `[wheels]`.
+    pub fn standing(&self, behind: &[f64], force: f64) -> Vec<f64> {
+        let series = self.series();
+        let line = Winkler::new(self.input.bending, series, self.input.spacing);
+        let weight = self.input.mass * self.input.gravity * self.input.spacing;
+        let height = |at: &f64| {
+            let wheels: f64 = behind.iter().map(|other| force * line.share(at - other)).sum();
+            -(wheels + weight) / series
+        };
+        behind.iter().map(height).collect()
     }
 
     /// Straight, at rest, without force.
@@ -256,16 +288,28 @@ impl Rail {
         weight: f64,
         scratch: &mut RailScratch,
     ) {
+        self.begin_step(state, seats, lifts, wheels, weight, scratch);
+        self.end_step(state, lifts, &[], scratch);
+    }
+
+    /// First part of a [step](Self::step): all but the accelerations.
+    pub fn begin_step(
+        &self,
+        state: &mut RailState,
+        seats: impl Iterator<Item = f64>,
+        lifts: &[f64],
+        wheels: &[Wheel],
+        weight: f64,
+        scratch: &mut RailScratch,
+    ) {
         let (dt, [stiff, damp]) = (self.dt, self.input.pad);
         let n = self.mass.size();
-        let RailScratch { right, load, moved } = scratch;
+        let RailScratch { right, load, moved, .. } = scratch;
         load.clear();
         load.extend(self.weight.iter().map(|w| weight * w));
         self.add_wheels(wheels, load);
         state.seats.rotate_right(1);
         state.seats[0].iter_mut().zip(seats.zip(lifts)).for_each(|(old, (new, lift))| *old = new - lift);
-        let [now, last, earlier] = &state.seats;
-        let speed = |k: usize| (1.5 * (now[k] - last[k]) - 0.5 * (last[k] - earlier[k])) / dt;
 
         moved.clear();
         moved.extend((0..n).map(|i| dt * state.v[i] + 0.25 * dt * dt * state.a[i]));
@@ -276,10 +320,25 @@ impl Rail {
         right.clear();
         right.extend_from_slice(load);
         for (k, &d) in self.seats.iter().enumerate() {
-            right[d] += stiff * now[k] + damp * speed(k);
+            right[d] += stiff * state.seats[0][k] + damp * state.seat_speed(k, dt);
         }
         self.stiffness.multiply_add(-1.0, &state.u, right);
         self.damping.multiply_add(-1.0, &state.v, right);
+    }
+
+    /// Second part of a step, with further `wheels`.
+    pub fn end_step(
+        &self,
+        state: &mut RailState,
+        lifts: &[f64],
+        wheels: &[Wheel],
+        scratch: &mut RailScratch,
+    ) {
+        let (dt, [stiff, damp]) = (self.dt, self.input.pad);
+        let n = self.mass.size();
+        let RailScratch { right, load, moved, .. } = scratch;
+        self.add_wheels(wheels, load);
+        self.add_wheels(wheels, right);
         self.factor.solve(right);
         state.a[..n].copy_from_slice(&right[..n]);
         for i in 0..n {
@@ -295,15 +354,17 @@ impl Rail {
         energy.wheels += (0..n).map(|i| 0.5 * (state.load[i] + load[i]) * moved[i]).sum::<f64>();
         let (mut springs, mut squares) = (0.0, 0.0);
         for (k, &d) in self.seats.iter().enumerate() {
-            let (spring, dashpot) = (stiff * (state.u[d] - now[k]), damp * (state.v[d] - speed(k)));
-            let (rise, lifted) = (now[k] - last[k], lifts[k] - state.lifts[k]);
+            let (now, last) = (state.seats[0][k], state.seats[1][k]);
+            let (spring, dashpot) =
+                (stiff * (state.u[d] - now), damp * (state.v[d] - state.seat_speed(k, dt)));
+            let (rise, lifted) = (now - last, lifts[k] - state.lifts[k]);
             let mean = 0.5 * (dashpot + state.dashpot[k]);
             let force = 0.5 * (spring + state.spring[k]) + mean;
             energy.on_seats += force * (rise + lifted);
             energy.wheels += force * lifted;
             energy.pads += mean * (moved[d] - rise);
             // The stiffness matrix contains pads on fixed seats.
-            springs += 0.5 * stiff * (state.u[d] - now[k]).powi(2);
+            springs += 0.5 * stiff * (state.u[d] - now).powi(2);
             squares += 0.5 * stiff * state.u[d].powi(2);
             (state.spring[k], state.dashpot[k]) = (spring, dashpot);
         }
@@ -315,13 +376,56 @@ impl Rail {
         state.lifts.copy_from_slice(lifts);
     }
 
+    /// Between the two parts of a step: heights that the rail would reach at `places` without further wheels [m],
+    /// 0 beyond the ends.
+    pub fn free_heights(
+        &self,
+        state: &RailState,
+        places: impl Iterator<Item = f64>,
+        scratch: &mut RailScratch,
+        mut each: impl FnMut(f64),
+    ) {
+        let RailScratch { right, free, .. } = scratch;
+        free.clear();
+        free.extend_from_slice(right);
+        self.factor.solve(free);
+        let share = 0.25 * self.dt * self.dt;
+        for at in places {
+            let shape = self.shape(at).into_iter().flatten();
+            each(shape.map(|(d, n)| n * (state.u[d] + share * free[d])).sum());
+        }
+    }
+
+    /// Height of the rail at `at` [m], 0 beyond the ends.
+    pub fn height(&self, state: &RailState, at: f64) -> f64 {
+        self.shape(at).into_iter().flatten().map(|(d, n)| n * state.u[d]).sum()
+    }
+
+    /// Lowering within a step at `places[i]` for 1 N downwards at `places[j]` [m/N], 0 beyond the ends.
+    /// Shape of `out`: `[places × places]`.
+    pub fn compliance(&self, places: &[[f64; 2]], scratch: &mut RailScratch, out: &mut Vec<f64>) {
+        let unit = &mut scratch.free;
+        out.clear();
+        for [at, _] in places {
+            unit.clear();
+            unit.resize(self.mass.size(), 0.0);
+            if let Some(shape) = self.shape(*at) {
+                shape.iter().for_each(|&(d, n)| unit[d] += n);
+                self.factor.solve(unit);
+            }
+            let share = 0.25 * self.dt * self.dt;
+            out.extend(places.iter().map(|[other, _]| {
+                self.shape(*other).into_iter().flatten().map(|(d, n)| share * n * unit[d]).sum::<f64>()
+            }));
+        }
+    }
+
     /// Static pad forces [N, downwards on the seat] per wheel position, with rail weight and foundation
     /// springs under all sleepers. `None` as in [`Rail::new`].
     pub fn static_seats(&self, passes: impl Iterator<Item = Vec<Wheel>>) -> Option<Vec<Vec<f64>>> {
-        let [pad, foundation] = [self.input.pad[0], self.input.foundation[0]];
-        let series = pad * foundation / (pad + foundation);
+        let series = self.series();
         let mut stiffness = self.stiffness.clone();
-        self.seats.iter().for_each(|&d| stiffness.add(d, d, series - pad));
+        self.seats.iter().for_each(|&d| stiffness.add(d, d, series - self.input.pad[0]));
         let factor = stiffness.factor()?;
         let mut u = vec![0.0; self.mass.size()];
         let force = |wheels: Vec<Wheel>| {
@@ -335,6 +439,17 @@ impl Rail {
 }
 
 impl RailState {
+    /// Upward speed of modelled seat `k`, extrapolated over a step of `dt` [m/s].
+    fn seat_speed(&self, k: usize, dt: f64) -> f64 {
+        let [now, last, earlier] = &self.seats;
+        (1.5 * (now[k] - last[k]) - 0.5 * (last[k] - earlier[k])) / dt
+    }
+
+    /// Number of modelled pads.
+    pub fn seats(&self) -> usize {
+        self.spring.len()
+    }
+
     /// Downward pad force on modelled sleeper `k` [N].
     pub fn force(&self, k: usize) -> f64 {
         -(self.spring[k] + self.dashpot[k])

@@ -2,6 +2,7 @@
 
 use super::load::{CyclicLoad, Waveform};
 use super::rail::{Rail, RailEnergy, RailInput, RailScratch, RailState, Wheel};
+use super::rolling::{Rolling, RollingInput, RollingRecord, RollingState};
 use serde::{Deserialize, Serialize};
 
 /// Static wheel positions per bay.
@@ -15,8 +16,12 @@ pub struct Rails {
     load: CyclicLoad,
     /// Height that the seats of each sleeper lack [m].
     gaps: Vec<f64>,
-    scratch: RailScratch,
+    rolling: Option<Rolling>,
+    /// Shape `[rails]`.
+    scratch: Vec<RailScratch>,
+    /// Given wheels; wheels of vehicles on each rail.
     wheels: Vec<Wheel>,
+    rolled: Vec<Vec<Wheel>>,
     seats: Vec<f64>,
     lifts: Vec<f64>,
 }
@@ -29,19 +34,38 @@ pub struct LaidRails {
     /// Seat heights at placement [m]. Shape `[sleepers × rails]`.
     heights: Vec<f64>,
     rails: Vec<RailState>,
+    rolling: Option<RollingState>,
 }
 
 impl Rails {
-    /// `count` rails for steps of `dt` [s]; `gaps` [m] by sleeper; `None` for invalid input.
-    pub fn new(input: RailInput, count: usize, gaps: &[f64], load: CyclicLoad, dt: f64) -> Option<Rails> {
-        let (spacing, rail) = (input.spacing, Rail::new(input, dt)?);
-        let (scratch, wheels, seats, lifts) = Default::default();
-        Some(Rails { rail, spacing, count, load, gaps: gaps.to_vec(), scratch, wheels, seats, lifts })
+    /// `count` rails for steps of `dt` [s]; `gaps` [m] by sleeper; axles of `vehicles`, if any; `None` for
+    /// invalid input.
+    pub fn new(
+        input: RailInput,
+        count: usize,
+        gaps: &[f64],
+        load: CyclicLoad,
+        vehicles: Option<&RollingInput>,
+        dt: f64,
+    ) -> Option<Rails> {
+        let (spacing, rail, gaps) = (input.spacing, Rail::new(input, dt)?, gaps.to_vec());
+        let rolling = match vehicles {
+            Some(input) => Some(Rolling::new(input.clone(), &rail, count, &load)?),
+            None => None,
+        };
+        let (scratch, rolled) = (vec![RailScratch::default(); count], vec![Vec::new(); count]);
+        let (wheels, seats, lifts) = Default::default();
+        Some(Rails { rail, spacing, count, load, gaps, rolling, scratch, wheels, rolled, seats, lifts })
     }
 
     /// Sleeper spacing [m].
     pub fn spacing(&self) -> f64 {
         self.spacing
+    }
+
+    /// Number of axles of vehicles.
+    pub fn axles(&self) -> usize {
+        self.rolling.as_ref().map_or(0, Rolling::axles)
     }
 
     /// Places straight, force-free rails on the sleepers after the rest.
@@ -50,7 +74,8 @@ impl Rails {
             return None;
         }
         let rails = vec![self.rail.laid(); self.count];
-        Some(LaidRails { step, heights: heights.collect(), rails })
+        let rolling = self.rolling.as_ref().map(Rolling::standing);
+        Some(LaidRails { step, heights: heights.collect(), rails, rolling })
     }
 
     /// Advances the rails to the grains' time.
@@ -67,15 +92,24 @@ impl Rails {
         debug_assert_eq!(laid.step + 1, step);
         laid.step = step;
         self.rail.set_dt(dt);
-        self.load.wheels(time, self.count, &mut self.wheels);
+        if self.rolling.is_none() {
+            self.load.wheels(time, self.count, &mut self.wheels);
+        }
         self.seats.clear();
         self.seats.extend(heights.zip(&laid.heights).map(|(now, then)| now - then));
         let weight = self.load.applied_share(time);
         self.lifts.clear();
         self.lifts.extend(self.gaps.iter().map(|gap| weight * gap));
-        for (r, state) in laid.rails.iter_mut().enumerate() {
+        for ((r, state), scratch) in laid.rails.iter_mut().enumerate().zip(&mut self.scratch) {
             let own = self.seats.iter().skip(r).step_by(self.count).copied();
-            self.rail.step(state, own, &self.lifts, &self.wheels, weight, &mut self.scratch);
+            self.rail.begin_step(state, own, &self.lifts, &self.wheels, weight, scratch);
+        }
+        if let (Some(rolling), Some(state)) = (&mut self.rolling, &mut laid.rolling) {
+            let rails = (&laid.rails[..], &mut self.scratch[..]);
+            rolling.advance(state, &self.load, time, &self.rail, rails, &mut self.rolled);
+        }
+        for ((state, scratch), rolled) in laid.rails.iter_mut().zip(&mut self.scratch).zip(&self.rolled) {
+            self.rail.end_step(state, &self.lifts, rolled, scratch);
         }
     }
 
@@ -117,6 +151,17 @@ impl LaidRails {
     /// Energy of all rails at the grains' half step.
     pub fn energy(&self) -> RailEnergy {
         self.rails.iter().fold(RailEnergy::default(), |sum, s| sum.plus(&s.energy_at_half_step()))
+    }
+
+    /// Forces of the axles of vehicles on the track, both rails together [N].
+    pub fn axle_forces<'a>(&'a self, rails: &'a Rails) -> impl Iterator<Item = f64> + 'a {
+        let rolling = rails.rolling.as_ref().zip(self.rolling.as_ref());
+        rolling.into_iter().flat_map(|(r, state)| (0..r.axles()).map(|i| r.axle_force(state, i)))
+    }
+
+    /// Results of the vehicles.
+    pub fn vehicles(&self, rails: &Rails) -> Option<RollingRecord> {
+        rails.rolling.as_ref()?.record(self.rolling.as_ref()?)
     }
 
     /// Number of rails.

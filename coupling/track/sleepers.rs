@@ -5,6 +5,7 @@ use super::load::{CyclicLoad, Waveform};
 use super::push_test::{PushTest, PushTestOptions, PushTestState, PushTestSummary};
 use super::rail::{RailEnergy, RailInput};
 use super::rails::{LaidRails, Rails};
+use super::rolling::RollingInput;
 use super::row::SleeperRow;
 use super::system::{GrainsView, MeshedSleeper, TrackSystem};
 use serde::{Deserialize, Serialize};
@@ -19,6 +20,8 @@ pub struct TrackInput<'a> {
     pub load: Option<&'a CyclicLoad>,
     /// Rail with mass on each row of seats.
     pub rail: Option<RailInput>,
+    /// Vehicles on it; otherwise the axles are given forces.
+    pub vehicles: Option<&'a RollingInput>,
     /// Lateral push after the cycles.
     pub push: Option<&'a PushTestOptions>,
 }
@@ -83,11 +86,11 @@ fn seats<'a>(
 impl<'a> Track<'a> {
     /// Track of a system.
     pub fn new(input: TrackInput<'a>, view: Option<GrainsView<'_>>) -> Track<'a> {
-        let TrackInput { sleepers: row, load, rail, push } = input;
+        let TrackInput { sleepers: row, load, rail, vehicles, push } = input;
         let count = row.filter(|r| !r.meshed).map_or(0, |r| r.centres.len());
         let rails = match (rail, row, load, view) {
             (Some(input), Some(row), Some(load), Some(view)) => {
-                Rails::new(input, row.seats.len(), &row.gaps, load.clone(), view.model.dt())
+                Rails::new(input, row.seats.len(), &row.gaps, load.clone(), vehicles, view.model.dt())
             }
             _ => None,
         };
@@ -294,6 +297,14 @@ impl<'a> Track<'a> {
         self.state.laid.as_ref().map(LaidRails::energy).unwrap_or_default()
     }
 
+    /// Forces of the axles of vehicles [N]; 0 before rails are laid, none without vehicles.
+    pub fn axle_forces(&self) -> impl Iterator<Item = f64> + '_ {
+        let (rails, laid) = (self.rails.as_ref(), self.state.laid.as_ref());
+        let count = rails.map_or(0, Rails::axles);
+        let before = std::iter::repeat_n(0.0, if laid.is_none() { count } else { 0 });
+        before.chain(rails.zip(laid).into_iter().flat_map(|(rails, laid)| laid.axle_forces(rails)))
+    }
+
     /// Placed rails with state and sleepers.
     pub fn laid_rails(&self) -> Option<(&Rails, &LaidRails, &SleeperRow)> {
         Some((self.rails.as_ref()?, self.state.laid.as_ref()?, self.row?))
@@ -311,6 +322,8 @@ impl<'a> Track<'a> {
         let record = |(k, e): (usize, &Extremes)| {
             e.record(axle, at_rest.as_ref().map(|f| f[k]), self.has_rails(), self.is_meshed())
         };
-        Some(TrackRecord { sleepers: extremes.iter().enumerate().map(record).collect() })
+        let vehicles =
+            self.rails.as_ref().zip(self.state.laid.as_ref()).and_then(|(r, laid)| laid.vehicles(r));
+        Some(TrackRecord { sleepers: extremes.iter().enumerate().map(record).collect(), vehicles })
     }
 }

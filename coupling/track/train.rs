@@ -22,6 +22,28 @@ impl CarLayout {
     }
 }
 
+/// Axle distances of a universal train of high speed (HSLM-A) [m]: power car, end coach, `coaches` coaches on
+/// shared bogies, end coach, power car. EN 1991-2:2003, figure 6.12.
+pub fn universal(coaches: u32, coach: f64, wheelbase: f64) -> Vec<f64> {
+    // Axles of the power car; its last to the first of the next car.
+    const POWER: [f64; 4] = [0.0, 3.0, 14.0, 17.0];
+    const GAP: f64 = 3.525;
+    let begin = POWER[3] + GAP;
+    let bogies = (0..coaches + 3).map(|k| begin + coach * f64::from(k));
+    let end = begin + coach * f64::from(coaches + 2) + wheelbase + GAP;
+    let mut axles = POWER.to_vec();
+    axles.extend(bogies.flat_map(|x| [x, x + wheelbase]));
+    axles.extend(POWER.map(|x| end + x));
+    axles
+}
+
+/// Line load of `force` [N/m] as axles at the centres of equal parts of at most 0.25 m: position [m], force [N].
+pub fn line_load(from: f64, to: f64, force: f64) -> impl Iterator<Item = [f64; 2]> {
+    let parts = ((to - from) / 0.25).ceil().max(1.0);
+    let step = (to - from) / parts;
+    (0..parts as usize).map(move |k| [from + (k as f64 + 0.5) * step, force * step])
+}
+
 /// Force amplitude [N], M a w² with w = 2πv/L, and `length` [m] of a rail wave under an unsprung `mass` [kg].
 /// `amplitude` [m], `speed` [m/s].
 pub fn excitation(mass: f64, amplitude: f64, length: f64, speed: f64) -> [f64; 2] {
@@ -38,6 +60,16 @@ mod tests {
     fn axles_of_two_cars() {
         let car = CarLayout { wheelbase: 2.5, bogie_spacing: 17.5, car_length: 25.0 };
         assert_eq!(car.axles(2), [0.0, 2.5, 17.5, 20.0, 25.0, 27.5, 42.5, 45.0]);
+    }
+
+    #[test]
+    fn universal_train_is_symmetric() {
+        let axles = universal(18, 18.0, 2.0);
+        let length = axles[axles.len() - 1];
+        assert_eq!((axles.len(), length), (50, 2.0 * 20.525 + 20.0 * 18.0 + 2.0));
+        for (a, b) in axles.iter().zip(axles.iter().rev()) {
+            assert!((a + b - length).abs() < 1e-9, "{a} {b}");
+        }
     }
 
     #[test]

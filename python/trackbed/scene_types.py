@@ -249,7 +249,8 @@ SchemeName = Literal["predicted", "lagged", "stiffened", "iterated"]
 # "gauss": Pulses Σ F exp(−((x − xᵢ − vt)/ℓ)²).
 # "bogie": Two axles.
 # "train": Axles of a train.
-SeatLoadKind = Literal["sine", "haversine", "ramp", "history", "gauss", "bogie", "train"]
+# "vehicle": Vehicles with suspensions on a `"beam"`.
+SeatLoadKind = Literal["sine", "haversine", "ramp", "history", "gauss", "bogie", "train", "vehicle"]
 
 
 # What a uniform law is uniform in.
@@ -692,6 +693,19 @@ class Deposition(TypedDict, total=False):
 
     # Mean unbalanced over contact force at rest, for or with `settled_speed`; default none; > 0, < 1.
     unbalanced_ratio: Float
+
+
+class Dip(TypedDict, total=False):
+    """Dipped joint: two parabolas that meet in a kink of 8 `depth`/`length`."""
+
+    # Position from the first sleeper [m].
+    at: Required[Quantity]
+
+    # Depth [m]; > 0.
+    depth: Required[Quantity]
+
+    # Length [m]; > 0.
+    length: Required[Quantity]
 
 
 class Direct(TypedDict, total=False):
@@ -1174,6 +1188,19 @@ class Inlet(TypedDict, total=False):
     velocity: Quantities
 
 
+class Irregularity(TypedDict, total=False):
+    """`[track.rail.irregularity]`: height of the running surface, the sum of all that is given."""
+
+    # Dipped joints.
+    dips: Sequence[Dip]
+
+    # CSV file `position, height` [m] from the first sleeper, header optional; level beyond its ends.
+    file: File
+
+    # Waves a sin 2πx/L as `[[L, a], …]` [m]; > 0 (L).
+    waves: Rows
+
+
 class Last(TypedDict, total=False):
     """Last part of a run, with frames of its own."""
 
@@ -1617,6 +1644,9 @@ class RailTable(TypedDict, total=False):
     # Sleepers that the rail lifts off the bed with the ramp; default none; with `"beam"`.
     hanging: Sequence[Hanging]
 
+    # Uneven running surface; default even; with `"vehicle"`.
+    irregularity: Irregularity
+
     # Model of the rail.
     kind: Required[RailKind]
 
@@ -1728,7 +1758,7 @@ class SeatLoad(TypedDict, total=False):
     # Distances behind the first pulse, ascending from 0 [m]; default `[0]`; with `"gauss"`.
     axles: Quantities
 
-    # Number of cars; default 1; 1–1000; with `"train"`.
+    # Number of cars; default 1; 1–1000; with `"train"`, `"vehicle"`.
     cars: Integer
 
     # Cycles or passes; default 1; ≥ 1; needed with `"sine"`, `"haversine"`.
@@ -1743,7 +1773,8 @@ class SeatLoad(TypedDict, total=False):
     # Fall time [s]; default stays; > 0; with `"ramp"`.
     fall: Quantity
 
-    # CSV file `time, force` [s, N], header optional; for `"train"` a table; with `"history"`, `"train"`.
+    # CSV file `time, force` [s, N], header optional; for `"train"`, `"vehicle"` a table; with `"history"`, `"train"`,
+    # `"vehicle"`.
     file: File
 
     # Frequency f [Hz]; > 0; with `"sine"`, `"haversine"`.
@@ -1776,11 +1807,17 @@ class SeatLoad(TypedDict, total=False):
     # Rail seats `[[x, y], …]` from the centre, with equal force [m]; default centre.
     seats: Rows
 
-    # Speed along the track [m/s]; > 0; with `"gauss"`, `"bogie"`, `"train"`, `"history"` (default infinite).
+    # Part of its weight on the modelled rails; default 1; > 0, ≤ 1; 0.5 for half a track; with `"vehicle"`.
+    share: Float
+
+    # Speed along the track [m/s]; > 0; with `"gauss"`, `"bogie"`, `"train"`, `"vehicle"`, `"history"` (default infinite).
     speed: Quantity
 
     # Name of the train; with `"train"`.
     train: str
+
+    # Name of the vehicle; with `"vehicle"`.
+    vehicle: str
 
     # Axle distance [m]; > 0; with `"bogie"`.
     wheelbase: Quantity

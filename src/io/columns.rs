@@ -196,6 +196,7 @@ pub mod history {
         INTERFACE_ERROR: Scalar "interface_error" "J" "difference of the interface work of grains and solid";
         ENERGY_ERROR: Scalar "energy_error" "J" "error of the energy balance";
         RAIL: Scalar "rail<_n>" "m" "deflection of the rail over the sleeper, upwards";
+        AXLE_FORCE: Scalar "axle<_n>_force" "N" "force of an axle of the vehicles on the track";
         RAIL_ENERGY: Scalar "rail_energy" "J" "elastic energy of rails, pads and far-field track";
         WHEELS_WORK: Scalar "wheels_work" "J" "work of the wheels and of the rail's weight";
         DISSIPATED_TRACK: Scalar "dissipated_track" "J" "dissipation in pads and far-field track";

@@ -161,6 +161,8 @@ fn files_of(scene: &Scene) -> Vec<&Path> {
         files.extend(g.region.as_ref().and_then(|r| r.surface.as_deref()));
     }
     files.extend(scene.track.iter().filter_map(|t| t.load.as_ref()?.file.as_deref()));
+    let rails = scene.track.iter().filter_map(|t| t.rail.as_ref());
+    files.extend(rails.filter_map(|r| r.irregularity.as_ref()?.file.as_deref()));
     files.extend(scene.walls.iter().filter_map(|w| w.file.as_deref()));
     files.extend(scene.bond.iter().filter_map(|b| b.pairs.as_deref()));
     files

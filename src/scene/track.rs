@@ -133,12 +133,12 @@ pub struct SeatLoad {
     pub hold: Option<Quantity<Time>>,
     /// Fall time [s]; default stays; > 0; with `"ramp"`.
     pub fall: Option<Quantity<Time>>,
-    /// CSV file `time, force` [s, N], header optional; for `"train"` a table; with `"history"`, `"train"`.
+    /// CSV file `time, force` [s, N], header optional; for `"train"`, `"vehicle"` a table; with `"history"`, `"train"`, `"vehicle"`.
     #[schemars(extend("format" = "path"))]
     pub file: Option<PathBuf>,
     /// Factor on the force, not 0; default 1; with `"history"`.
     pub factor: Option<f64>,
-    /// Speed along the track [m/s]; > 0; with `"gauss"`, `"bogie"`, `"train"`, `"history"` (default infinite).
+    /// Speed along the track [m/s]; > 0; with `"gauss"`, `"bogie"`, `"train"`, `"vehicle"`, `"history"` (default infinite).
     pub speed: Option<Quantity<Velocity>>,
     /// Half width ℓ of a pulse at 1/e [m]; > 0; with `"gauss"`.
     pub width: Option<Quantity<Length>>,
@@ -150,7 +150,11 @@ pub struct SeatLoad {
     pub wheelbase: Option<Quantity<Length>>,
     /// Name of the train; with `"train"`.
     pub train: Option<String>,
-    /// Number of cars; default 1; 1–1000; with `"train"`.
+    /// Name of the vehicle; with `"vehicle"`.
+    pub vehicle: Option<String>,
+    /// Part of its weight on the modelled rails; default 1; > 0, ≤ 1; 0.5 for half a track; with `"vehicle"`.
+    pub share: Option<f64>,
+    /// Number of cars; default 1; 1–1000; with `"train"`, `"vehicle"`.
     pub cars: Option<u32>,
     /// Uneven rail: Σ M a w² sin wt, w = 2πv/L; default none; with `"bogie"`, `"train"`.
     pub excitation: Option<Excitation>,
@@ -201,6 +205,8 @@ pub enum SeatLoadKind {
     Bogie,
     /// Axles of a train.
     Train,
+    /// Vehicles with suspensions on a `"beam"`.
+    Vehicle,
 }
 
 /// Forces of an uneven rail: Σ M a w² sin wt with w = 2πv/L.
@@ -238,6 +244,35 @@ pub struct RailTable {
     /// Sleepers that the rail lifts off the bed with the ramp; default none; with `"beam"`.
     #[serde(default)]
     pub hanging: Vec<Hanging>,
+    /// Uneven running surface; default even; with `"vehicle"`.
+    pub irregularity: Option<IrregularityTable>,
+}
+
+/// `[track.rail.irregularity]`: height of the running surface, the sum of all that is given.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename = "Irregularity", deny_unknown_fields)]
+pub struct IrregularityTable {
+    /// CSV file `position, height` [m] from the first sleeper, header optional; level beyond its ends.
+    #[schemars(extend("format" = "path"))]
+    pub file: Option<PathBuf>,
+    /// Waves a sin 2πx/L as `[[L, a], …]` [m]; > 0 (L).
+    #[serde(default)]
+    pub waves: Vec<[Quantity<Length>; 2]>,
+    /// Dipped joints.
+    #[serde(default)]
+    pub dips: Vec<DipRow>,
+}
+
+/// Dipped joint: two parabolas that meet in a kink of 8 `depth`/`length`.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename = "Dip", deny_unknown_fields)]
+pub struct DipRow {
+    /// Position from the first sleeper [m].
+    pub at: Quantity<Length>,
+    /// Depth [m]; > 0.
+    pub depth: Quantity<Length>,
+    /// Length [m]; > 0.
+    pub length: Quantity<Length>,
 }
 
 /// Sleeper over a void.

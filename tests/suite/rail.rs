@@ -93,6 +93,69 @@ fn a_bogie_on_a_beam() {
     assert!((1.0..1.5).contains(&amplification), "{amplification}");
 }
 
+/// Vehicle of `inputs/data` over the same sleepers.
+fn vehicle(speed: &str) -> String {
+    let file = repository().join("inputs/data/vehicles.toml");
+    format!(
+        "\n[track.load]\nkind = \"vehicle\"\nfile = '{}'\nvehicle = \"Manchester\"\nspeed = \"{speed}\"\nrest = \"30 ms\"\nramp = \"100 ms\"\n",
+        file.display()
+    )
+}
+
+#[test]
+fn a_vehicle_on_a_beam() {
+    let dip = "irregularity = { dips = [{ at = 0.6, depth = \"2 mm\", length = \"1 m\" }] }\n";
+    let ran = |rail: &str| {
+        let (folder, scene) = written(&springs(3, &(vehicle("200 km/h") + BEAM + rail)));
+        let out = folder.join("out");
+        trackbed::run::run(&scene, &options(&out, 1)).unwrap();
+        (Table::read(&out.join("history.csv")), json(&out.join("summary.json")))
+    };
+    let weight = (32e3 + 2.0 * 2615.0 + 4.0 * 1813.0) * 9.81;
+    let (history, even) = ran("");
+    assert!(even["energy"]["relative_error"].as_f64().unwrap() < 1e-5, "{}", even["energy"]);
+    let vehicles = &even["track"]["vehicles"];
+    assert!((vehicles["static_force"].as_f64().unwrap() - 0.25 * weight).abs() < 1.0);
+    for axle in vehicles["axles"].as_array().unwrap() {
+        let number = |key: &str| axle[key].as_f64().unwrap() / (0.25 * weight);
+        assert!((number("mean_force") - 1.0).abs() < 0.005, "{axle}");
+        assert!(number("largest_force") < 1.2 && number("smallest_force") > 0.8, "{axle}");
+    }
+    // No wheels before the pass; the whole weight while all are on the rail or the even track beside.
+    let forces: Vec<Vec<f64>> = (1..=4).map(|k| history.column(&format!("axle_{k}_force"))).collect();
+    let sum: Vec<f64> = (0..forces[0].len()).map(|i| forces.iter().map(|f| f[i]).sum()).collect();
+    assert_eq!(sum[0], 0.0);
+    let during: Vec<f64> = sum.into_iter().filter(|f| *f != 0.0).collect();
+    let mean = during.iter().sum::<f64>() / during.len() as f64;
+    assert!((mean / weight - 1.0).abs() < 0.01, "{mean} {weight}");
+    let (_, uneven) = ran(dip);
+    let largest =
+        |summary: &serde_json::Value| summary["track"]["vehicles"]["axles"][1]["largest_force"].as_f64();
+    let ratio = largest(&uneven).unwrap() / largest(&even).unwrap();
+    println!("largest axle force at a joint dipped by 16 mrad, 200 km/h: {ratio:.2} of that on an even rail");
+    assert!((1.5..4.0).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn broken_vehicles_are_refused() {
+    let rail = "irregularity = { waves = [[1.0, 0.001]], dips = [{ at = 0, depth = 0.001, length = 1 }] }\n";
+    let scene = springs(2, &(vehicle("200 km/h") + "share = 0.5\n" + BEAM + rail));
+    let of = |old: &str, new: &str, line: &str| refused(&scene, old, new, line);
+    of(
+        "\"Manchester\"",
+        "\"Mancester\"",
+        "vehicle: found no vehicle \"Mancester\", expected one of Velaro E, ",
+    );
+    of("share = 0.5", "share = 0", "track.load.share: found 0, expected above 0, at most 1");
+    of("share = 0.5", "cars = 0", "track.load.cars: found 0, expected 1 to 1000");
+    of("share = 0.5", "axle_load = 1e5", "track.load.axle_load: found, but it has no effect without");
+    of("[[1.0,", "[[0.0,", "track.rail.irregularity.waves: found 0, expected lengths above 0");
+    of("depth = 0.001", "depth = -1", "track.rail.irregularity.dips.0.depth: found -1, expected above 0");
+    of("waves = [[1.0, 0.001]]", "file = \"none.csv\"", "none.csv: profile: found ");
+    let bogie = springs(2, &(bogie("200 km/h") + BEAM + rail));
+    refused(&bogie, "extension", "extension", "track.rail.irregularity: found, but it needs");
+}
+
 /// A sleeper over a void hangs on the rail by its weight; its neighbours take a larger share of the wheels until it touches the bed.
 #[test]
 fn sleeper_hangs_over_a_void() {

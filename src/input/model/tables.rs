@@ -286,21 +286,35 @@ pub fn stone_packing(file: &Path, stones: usize) -> Result<Vec<PlacedStone>, Rea
 /// # Errors
 /// Missing file, invalid rows, unordered times, heading without the columns.
 pub fn history(file: &Path, value: Column) -> Result<Vec<(f64, f64)>, ReadError> {
+    curve(file, "history", heading::TIME, value)
+}
+
+/// Reads heights over ascending positions, with optional heading [m].
+///
+/// # Errors
+/// Missing file, invalid rows, unordered positions, heading without the columns.
+pub fn profile(file: &Path) -> Result<Vec<(f64, f64)>, ReadError> {
+    let position = Column::length("position", &["position", "x", "distance", "chainage"]);
+    curve(file, "profile", position, Column::length("height", &["height", "z", "irregularity"]))
+}
+
+/// Values over an ascending first column.
+fn curve(file: &Path, what: &str, over: Column, value: Column) -> Result<Vec<(f64, f64)>, ReadError> {
     let mut points: Vec<(f64, f64)> = Vec::new();
-    let name = value.name;
-    numbers(file, "history", &[heading::TIME, value], &[], |line, [time, value]| {
+    let ([first, second], unit) = ([over.name, value.name], over.si_unit());
+    numbers(file, what, &[over, value], &[], |line, [x, value]| {
         if let Some(&(before, _)) = points.last()
-            && time <= before
+            && x <= before
         {
-            let expected = format!("a time after {before} s");
-            return Err(fault(file, Some(line), "time", time.to_string(), expected));
+            let expected = format!("a {first} after {before} {unit}");
+            return Err(fault(file, Some(line), first, x.to_string(), expected));
         }
-        points.push((time, value));
+        points.push((x, value));
         Ok(())
     })?;
     if points.is_empty() {
-        let expected = format!("at least one row of time, {name}");
-        return Err(fault(file, None, "history", "no row", expected));
+        let expected = format!("at least one row of {first}, {second}");
+        return Err(fault(file, None, what, "no row", expected));
     }
     points.shrink_to_fit();
     Ok(points)

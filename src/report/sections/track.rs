@@ -35,17 +35,18 @@ pub fn pressure(runs: &[RunData]) -> Option<Section> {
 
 /// Formats sleeper loads and results.
 pub fn sleepers(runs: &[RunData]) -> Option<Section> {
-    let numbered = |run: &RunData, column: &'static Definition| -> Vec<(String, Vec<[f64; 2]>)> {
+    let numbered = |run: &RunData, what: &str, column: &'static Definition| -> Vec<(String, Vec<[f64; 2]>)> {
         let Some(table) = run.table("history") else { return Vec::new() };
         let all = table.items(column).into_iter().filter_map(|number| {
-            let label = number.strip_prefix('_').map_or(String::new(), |n| format!("sleeper {n}"));
+            let label = number.strip_prefix('_').map_or(String::new(), |n| format!("{what} {n}"));
             Some((label, table.points(history::TIME, column.of(number))?))
         });
         all.collect()
     };
     let time = || Axis::new("time", "s");
-    let load = overlay(runs, |r| numbered(r, history::LOAD));
-    let rail = overlay(runs, |r| numbered(r, history::RAIL));
+    let load = overlay(runs, |r| numbered(r, "sleeper", history::LOAD));
+    let rail = overlay(runs, |r| numbered(r, "sleeper", history::RAIL));
+    let axles = overlay(runs, |r| numbered(r, "axle", history::AXLE_FORCE));
     let mut rows = Vec::new();
     for run in runs {
         for (k, s) in run.list("track.sleepers").iter().enumerate() {
@@ -77,6 +78,7 @@ pub fn sleepers(runs: &[RunData]) -> Option<Section> {
     let figures = plots([
         figure("Vertical load on rail seats", time(), Axis::new("load", "N"), load),
         figure("Rail deflection at the sleepers", time(), Axis::new("deflection, upwards", "m"), rail),
+        figure("Force of the axles on the track", time(), Axis::new("axle force", "N").with_zero(), axles),
     ]);
     Section::new("sleepers", "Sleepers", joined([figures, table(&heads, &rows)]))
 }

@@ -78,6 +78,9 @@ impl<S> Recorder<S> for Rails {
         for k in 0..now.track.count() {
             row.put(history::RAIL.of(&number(now, k)), now.track.rail_deflection(k));
         }
+        for (k, force) in now.track.axle_forces().enumerate() {
+            row.put(history::AXLE_FORCE.of(&format!("_{}", k + 1)), force);
+        }
         let (stored, spent) = (&now.balance.now, &now.balance.spent);
         row.put(history::RAIL_ENERGY, stored.rail);
         row.put(history::WHEELS_WORK, spent.wheels);

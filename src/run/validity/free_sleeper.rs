@@ -31,7 +31,7 @@ mod tests {
         let track = |times: &[f64]| {
             let sleepers =
                 times.iter().map(|&t| SleeperRecord { lifted_off: lift(t), ..SleeperRecord::default() });
-            TrackRecord { sleepers: sleepers.collect() }
+            TrackRecord { sleepers: sleepers.collect(), vehicles: None }
         };
         let status = |times: &[f64]| free_sleeper(&track(times), 1.0).map(|c| c.status);
         assert_eq!(status(&[]), None);

@@ -27,6 +27,11 @@ impl Column {
         Column { name, names, units: Length::UNITS, others: None }
     }
 
+    /// SI unit.
+    pub fn si_unit(&self) -> &'static str {
+        self.units.first().map_or("", |(name, _)| name)
+    }
+
     /// Accepts any name in a table without further columns.
     #[must_use]
     pub const fn of_any_name(self) -> Column {

@@ -3,3 +3,4 @@
 pub mod plan;
 pub mod sleeper;
 pub mod trains;
+pub mod vehicles;

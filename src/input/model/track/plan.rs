@@ -1,34 +1,38 @@
 //! `[track.load]` and `[track.rail]` resolved.
 
-use super::trains;
+use super::{trains, vehicles};
 use crate::model::tables;
-use crate::scene::track::{RailKind, RailTable, SeatLoad, SeatLoadKind, SeatingTable, TrackTable};
+use crate::scene::track::{
+    IrregularityTable, RailKind, RailTable, SeatLoad, SeatLoadKind, SeatingTable, TrackTable,
+};
 use crate::scene::{Number, SceneError, Table, kinds};
 use trackbed_io::failure::Failure;
 use trackbed_track::influence::Winkler;
+use trackbed_track::irregularity::{Dip, Irregularity};
 use trackbed_track::load::{AxleSpread, CyclicLoad, Pass, Seating, Waveform};
 use trackbed_track::rail::RailInput;
+use trackbed_track::rolling::RollingInput;
 use trackbed_track::train;
 
 /// Spacings over which a wheel load is ramped at the rail ends.
 const TAPER: f64 = 2.0;
 
 /// Keys, their load kinds, whether required.
-const KEYS: [(&str, &[SeatLoadKind], bool); 21] = {
-    use SeatLoadKind::{Bogie, Gauss, Haversine, History, Ramp, Sine, Train};
+const KEYS: [(&str, &[SeatLoadKind], bool); 23] = {
+    use SeatLoadKind::{Bogie, Gauss, Haversine, History, Ramp, Sine, Train, Vehicle};
     [
         ("minimum", &[Sine, Haversine], true),
         ("minimum", &[Ramp], false),
         ("maximum", &[Sine, Haversine, Ramp, Gauss], true),
         ("frequency", &[Sine, Haversine], true),
         ("cycles", &[Sine, Haversine], true),
-        ("cycles", &[Ramp, History, Gauss, Bogie, Train], false),
+        ("cycles", &[Ramp, History, Gauss, Bogie, Train, Vehicle], false),
         ("rise", &[Ramp], true),
         ("hold", &[Ramp], true),
         ("fall", &[Ramp], false),
-        ("file", &[History, Train], true),
+        ("file", &[History, Train, Vehicle], true),
         ("factor", &[History], false),
-        ("speed", &[Gauss, Bogie, Train], true),
+        ("speed", &[Gauss, Bogie, Train, Vehicle], true),
         ("speed", &[History], false),
         ("width", &[Gauss], true),
         ("axles", &[Gauss], false),
@@ -36,7 +40,9 @@ const KEYS: [(&str, &[SeatLoadKind], bool); 21] = {
         ("axle_load", &[Train], false),
         ("wheelbase", &[Bogie], true),
         ("train", &[Train], true),
-        ("cars", &[Train], false),
+        ("vehicle", &[Vehicle], true),
+        ("share", &[Vehicle], false),
+        ("cars", &[Train, Vehicle], false),
         ("excitation", &[Bogie, Train], false),
     ]
 };
@@ -51,11 +57,16 @@ fn least_zero<T>(table: &Table<T>, key: &str, value: impl Number) -> Result<f64,
     table.check(key, value.number().unwrap_or(0.0), |x| x >= 0.0, "0 or more")
 }
 
-/// Resolves the load on sleepers at `places` [m], through an optional `rail`.
+/// Resolves the load on sleepers at `places` [m], through an optional `rail`, of `vehicles`, if any.
 ///
 /// # Errors
 /// Input errors.
-pub fn load(l: &Table<SeatLoad>, places: Vec<f64>, rail: Option<&RailPlan>) -> Result<CyclicLoad, Failure> {
+pub fn load(
+    l: &Table<SeatLoad>,
+    places: Vec<f64>,
+    rail: Option<&RailPlan>,
+    vehicles: Option<&RollingInput>,
+) -> Result<CyclicLoad, Failure> {
     which_keys(l)?;
     let cycles = l.check("cycles", l.cycles.unwrap_or(1), |n| n >= 1.0, "1 or more")?;
     let (rest, ramp) = (least_zero(l, "rest", l.rest)?, least_zero(l, "ramp", l.ramp)?);
@@ -63,9 +74,9 @@ pub fn load(l: &Table<SeatLoad>, places: Vec<f64>, rail: Option<&RailPlan>) -> R
     let maximum = l.check("maximum", l.maximum, |f| f > minimum, "more than the minimum")?;
     let maximum = maximum.map_or(0.0, |f| f.si);
     let speed = l.speed.map(|v| above_zero(l, "speed", v)).transpose()?;
-    if matches!(l.kind, SeatLoadKind::Bogie | SeatLoadKind::Train) != rail.is_some() {
+    if matches!(l.kind, SeatLoadKind::Bogie | SeatLoadKind::Train | SeatLoadKind::Vehicle) != rail.is_some() {
         let (found, expected) = match rail {
-            Some(_) => ("a load on the sleepers", "\"bogie\" or \"train\" on a rail"),
+            Some(_) => ("a load on the sleepers", "\"bogie\", \"train\" or \"vehicle\" on a rail"),
             None => ("wheels", "[track.rail], on which they roll"),
         };
         return Err(l.error("kind", found, expected).into());
@@ -111,8 +122,8 @@ pub fn load(l: &Table<SeatLoad>, places: Vec<f64>, rail: Option<&RailPlan>) -> R
                 Vec::new(),
             ))
         }
-        SeatLoadKind::Bogie | SeatLoadKind::Train => {
-            let axles = axles(l)?;
+        SeatLoadKind::Bogie | SeatLoadKind::Train | SeatLoadKind::Vehicle => {
+            let axles = axles(l, vehicles)?;
             let waves = waves(l, speed.unwrap_or(0.0))?;
             let rail = rail.expect("checked above");
             Waveform::Pass(Pass::over(&places, speed.unwrap_or(1.0), axles, rail.spread(&places), waves))
@@ -150,6 +161,8 @@ fn which_keys(l: &Table<SeatLoad>) -> Result<(), SceneError> {
         "axle_load" => l.axle_load.is_some(),
         "wheelbase" => l.wheelbase.is_some(),
         "train" => l.train.is_some(),
+        "vehicle" => l.vehicle.is_some(),
+        "share" => l.share.is_some(),
         "cars" => l.cars.is_some(),
         _ => l.excitation.is_some(),
     };
@@ -169,19 +182,32 @@ fn which_keys(l: &Table<SeatLoad>) -> Result<(), SceneError> {
     Ok(())
 }
 
+/// Number of cars.
+fn cars(l: &Table<SeatLoad>) -> Result<u32, SceneError> {
+    l.check("cars", l.cars.unwrap_or(1), |n| (1.0..=1000.0).contains(&n), "1 to 1000")
+}
+
+/// Reads the vehicle of a load of that kind.
+fn vehicle(l: &Table<SeatLoad>) -> Result<vehicles::Vehicle, SceneError> {
+    let file = l.file.as_deref().unwrap_or_else(|| std::path::Path::new(""));
+    vehicles::vehicle(&l.locate(file), l.vehicle.as_deref().unwrap_or_default())
+}
+
 /// Distance behind the first axle [m], force [N].
-fn axles(l: &Table<SeatLoad>) -> Result<Vec<[f64; 2]>, SceneError> {
+fn axles(l: &Table<SeatLoad>, vehicles: Option<&RollingInput>) -> Result<Vec<[f64; 2]>, SceneError> {
+    if let Some(rolling) = vehicles {
+        let force = rolling.share * rolling.vehicle.axle_load();
+        return Ok(vehicle(l)?.axles(cars(l)?).into_iter().map(|behind| [behind, force]).collect());
+    }
     let given = l.axle_load.map(|f| above_zero(l, "axle_load", f)).transpose()?;
     if l.kind == SeatLoadKind::Bogie {
         let base = above_zero(l, "wheelbase", l.wheelbase)?;
         let force = given.unwrap_or(0.0);
         return Ok(vec![[0.0, force], [base, force]]);
     }
-    let cars = l.check("cars", l.cars.unwrap_or(1), |n| (1.0..=1000.0).contains(&n), "1 to 1000")?;
     let file = l.file.as_deref().unwrap_or_else(|| std::path::Path::new(""));
-    let car = trains::car(&l.locate(file), l.train.as_deref().unwrap_or_default())?;
-    let force = given.unwrap_or(car.axle_load.si);
-    Ok(car.axles(cars).into_iter().map(|behind| [behind, force]).collect())
+    let cars = l.cars.map(|_| cars(l)).transpose()?;
+    trains::axles(&l.locate(file), l.train.as_deref().unwrap_or_default(), cars, given)
 }
 
 /// Force amplitude [N] and length [m] of irregularities.
@@ -215,6 +241,52 @@ impl RailPlan {
             }
         }
     }
+}
+
+/// Resolves vehicles on a rail under `gravity` [m/s²]; none with other loads.
+///
+/// # Errors
+/// Input errors.
+pub fn vehicles(track: &Table<TrackTable>, gravity: f64) -> Result<Option<RollingInput>, Failure> {
+    let rail = track.optional("rail", &track.rail);
+    let uneven = rail.as_ref().and_then(|r| r.optional("irregularity", &r.irregularity));
+    let Some(l) = track.optional("load", &track.load).filter(|l| l.kind == SeatLoadKind::Vehicle) else {
+        let kind = kinds(&[SeatLoadKind::Vehicle]);
+        let needed = format!("track.load.kind = {kind}");
+        return match uneven {
+            Some(_) => Err(track.requirement("rail.irregularity", &needed).into()),
+            None => Ok(None),
+        };
+    };
+    which_keys(&l)?;
+    if rail.as_ref().is_none_or(|r| r.kind != RailKind::Beam) {
+        return Err(l.error("kind", kinds(&[l.kind]), "a rail of kind \"beam\" in [track.rail]").into());
+    }
+    l.check("kind", gravity, |g| g > 0.0, "gravity downwards")?;
+    let vehicle = vehicle(&l)?;
+    Ok(Some(RollingInput {
+        vehicle: vehicle.input(gravity),
+        hertz: vehicle.hertz(),
+        share: l.check("share", l.share.unwrap_or(1.0), |s| s > 0.0 && s <= 1.0, "above 0, at most 1")?,
+        irregularity: uneven.map(|u| irregularity(&u)).transpose()?.unwrap_or_default(),
+    }))
+}
+
+fn irregularity(u: &Table<IrregularityTable>) -> Result<Irregularity, Failure> {
+    let mut all = Irregularity::default();
+    for [length, amplitude] in &u.waves {
+        let length = u.check("waves", length.si, |x| x > 0.0, "lengths above 0")?;
+        all.waves.push([length, amplitude.si]);
+    }
+    for row in u.rows("dips", &u.dips) {
+        let (depth, length) =
+            (above_zero(&row, "depth", row.depth)?, above_zero(&row, "length", row.length)?);
+        all.dips.push(Dip { at: row.at.si, depth, length });
+    }
+    if let Some(file) = &u.file {
+        all.profile = tables::profile(&u.locate(file))?;
+    }
+    Ok(all)
 }
 
 /// Height that the seats of each sleeper lack for the rail [m]; 0 for all but hanging ones.

@@ -47,10 +47,11 @@ pub(super) fn build(
     let seats = sleeper::seats(track, half)?.iter().map(|s| [s[0], s[1], half[2]]).collect();
     let centres = sleeper::row(s)?;
     let rail = track.optional("rail", &track.rail).map(|r| plan::rail(track, &r)).transpose()?;
+    part.vehicles = plan::vehicles(track, -gravity.z)?;
     if let Some(l) = track.optional("load", &track.load) {
         let axis = s.along.axis();
         let places = centres.iter().map(|c| c[axis] - centres[0][axis]).collect();
-        part.load = Some(plan::load(&l, places, rail.as_ref())?);
+        part.load = Some(plan::load(&l, places, rail.as_ref(), part.vehicles.as_ref())?);
     }
     if let Some(RailPlan::Beam(input)) = rail {
         part.rail = Some(RailInput { gravity: -gravity.z, ..*input });

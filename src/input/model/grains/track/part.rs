@@ -5,6 +5,7 @@ use trackbed_track::CyclicLoad;
 use trackbed_track::cycle_jump::CycleJumpOptions;
 use trackbed_track::push_test::PushTestOptions;
 use trackbed_track::rail::RailInput;
+use trackbed_track::rolling::RollingInput;
 use trackbed_track::{SleeperRow, TrackInput};
 
 /// The track of a scene.
@@ -18,6 +19,8 @@ pub struct TrackPart {
     pub after: AfterPlan,
     /// Beam rail, one per seat.
     pub rail: Option<RailInput>,
+    /// Vehicles on it.
+    pub vehicles: Option<RollingInput>,
 }
 
 /// Sleepers among the grains.
@@ -102,6 +105,7 @@ impl TrackPart {
             sleepers: self.sleeper.as_ref().map(|s| &s.row),
             load: self.load.as_ref(),
             rail: self.rail,
+            vehicles: self.vehicles.as_ref(),
             push: self.after.push.as_ref(),
         }
     }
