@@ -55,14 +55,14 @@ pub struct RollingState {
     /// Downward force of an axle on a rail [N]. Shape `[axles × rails]`.
     forces: Vec<f64>,
     /// Of axle forces. Shape `[axles]`.
-    tallies: Vec<Tally>,
+    statistics: Vec<Statistics>,
     /// Of the acceleration of bodies.
-    body: Tally,
+    body: Statistics,
 }
 
 /// Statistics over time.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Tally {
+struct Statistics {
     duration: f64,
     sum: f64,
     squares: f64,
@@ -71,13 +71,19 @@ struct Tally {
     lost: f64,
 }
 
-impl Default for Tally {
-    fn default() -> Tally {
-        Tally { duration: 0.0, sum: 0.0, squares: 0.0, range: [f64::INFINITY, f64::NEG_INFINITY], lost: 0.0 }
+impl Default for Statistics {
+    fn default() -> Statistics {
+        Statistics {
+            duration: 0.0,
+            sum: 0.0,
+            squares: 0.0,
+            range: [f64::INFINITY, f64::NEG_INFINITY],
+            lost: 0.0,
+        }
     }
 }
 
-impl Tally {
+impl Statistics {
     fn add(&mut self, value: f64, dt: f64) {
         self.duration += dt;
         self.sum += dt * value;
@@ -140,8 +146,8 @@ impl Rolling {
             pass: None,
             cars: vec![VehicleState::default(); axles / AXLES],
             forces: vec![self.force; axles * self.rails],
-            tallies: vec![Tally::default(); axles],
-            body: Tally::default(),
+            statistics: vec![Statistics::default(); axles],
+            body: Statistics::default(),
         }
     }
 
@@ -250,8 +256,8 @@ impl Rolling {
             }
             if *share == 1.0 {
                 let force = on_axle(i, &state.forces);
-                state.tallies[i].add(force, rail.dt());
-                state.tallies[i].lost += if force == 0.0 { rail.dt() } else { 0.0 };
+                state.statistics[i].add(force, rail.dt());
+                state.statistics[i].lost += if force == 0.0 { rail.dt() } else { 0.0 };
             }
         }
         for (c, car) in state.cars.iter_mut().enumerate() {
@@ -276,17 +282,17 @@ impl Rolling {
 
     /// Results; `None` before wheels were on the rails.
     pub fn record(&self, state: &RollingState) -> Option<RollingRecord> {
-        let axle = |t: &Tally| AxleRecord {
+        let axle = |t: &Statistics| AxleRecord {
             largest_force: t.range[1],
             smallest_force: t.range[0],
             mean_force: t.mean(),
             standard_deviation: t.deviation(),
             without_contact: t.lost,
         };
-        let begun = state.tallies.iter().all(|t| t.duration > 0.0);
+        let begun = state.statistics.iter().all(|t| t.duration > 0.0);
         begun.then(|| RollingRecord {
             static_force: self.vehicle.axle_load(),
-            axles: state.tallies.iter().map(axle).collect(),
+            axles: state.statistics.iter().map(axle).collect(),
             body_acceleration: state.body.range[1].max(-state.body.range[0]),
             body_acceleration_rms: (state.body.squares / state.body.duration).sqrt(),
         })

@@ -159,7 +159,7 @@ fn difference(name: &str, old: &[u8], new: &[u8]) -> Option<String> {
     }
 }
 
-/// Path of the first different value, apart from those of the machine.
+/// Path of the first different value, except machine data.
 fn first_difference(old: &Value, new: &Value, path: &str, found: &mut Option<String>) {
     if found.is_some() || old == new || MACHINE.contains(&path) {
         return;

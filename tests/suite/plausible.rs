@@ -253,8 +253,8 @@ fn scenes(folder: &Path, out: &mut Vec<std::path::PathBuf>) {
             scenes(&path, out);
         } else if path.extension().is_some_and(|e| e == "toml") {
             let text = std::fs::read_to_string(&path).unwrap();
-            // Skips studies and stone libraries.
-            if text.contains("[[grains]]") || text.contains("[solid]") {
+            // Skips studies, stone libraries and included parts.
+            if text.lines().any(|line| line.starts_with("title =")) && !text.contains("\nscene =") {
                 out.push(path);
             }
         }

@@ -153,7 +153,12 @@ fn broken_vehicles_are_refused() {
     of("depth = 0.001", "depth = -1", "track.rail.irregularity.dips.0.depth: found -1, expected above 0");
     of("waves = [[1.0, 0.001]]", "file = \"none.csv\"", "none.csv: profile: found ");
     let bogie = springs(2, &(bogie("200 km/h") + BEAM + rail));
-    refused(&bogie, "extension", "extension", "track.rail.irregularity: found, but it needs");
+    refused(
+        &bogie,
+        "extension",
+        "extension",
+        "track.rail.irregularity: found without track.load.kind = \"vehicle\", expected both",
+    );
 }
 
 /// A sleeper over a void hangs on the rail by its weight; its neighbours take a larger share of the wheels until it touches the bed.
@@ -632,7 +637,7 @@ fn broken_loads_on_sleepers_are_refused() {
         &on_rail,
         "cycles = 1",
         "cycles = 1",
-        "track.load.kind: found a load on the sleepers, expected \"bogie\" or \"train\" on a rail",
+        "track.load.kind: found a load on the sleepers, expected \"bogie\", \"train\" or \"vehicle\" on a rail",
     );
     let alone = springs(2, BEAM);
     refused(

@@ -89,7 +89,7 @@ pub trait ConstitutiveLaw {
 
     /// Integrates a strain increment [-] (engineering shear) from a committed state.
     ///
-    /// `values` receives the new state values; requires no [`ConstitutiveLaw::fault`].
+    /// `values` receives the new state values; requires no [`ConstitutiveLaw::invalid_constant`].
     ///
     /// # Errors
     /// See [`ReturnError`].

@@ -251,10 +251,8 @@ pub fn vehicles(track: &Table<TrackTable>, gravity: f64) -> Result<Option<Rollin
     let rail = track.optional("rail", &track.rail);
     let uneven = rail.as_ref().and_then(|r| r.optional("irregularity", &r.irregularity));
     let Some(l) = track.optional("load", &track.load).filter(|l| l.kind == SeatLoadKind::Vehicle) else {
-        let kind = kinds(&[SeatLoadKind::Vehicle]);
-        let needed = format!("track.load.kind = {kind}");
         return match uneven {
-            Some(_) => Err(track.requirement("rail.irregularity", &needed).into()),
+            Some(_) => Err(track.requirement("rail.irregularity", "track.load.kind = \"vehicle\"").into()),
             None => Ok(None),
         };
     };
