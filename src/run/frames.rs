@@ -13,7 +13,7 @@ use trackbed_input::model::grains::{GrainsPart, MaterialsPart};
 use trackbed_io::failure::Failure;
 use trackbed_io::write::{
     BODY_FIELDS, BodyField, ChainFrame, Frame, GrainFrame, NO_BODY, Part, STONE_BODY, STONE_CENTRE,
-    SolidFrame, Values, WallFrame, WallKind, Writers, Written,
+    SolidFrame, Values, WallFrame, WallKind, Writers,
 };
 
 /// Elastic material: inside by definition.
@@ -189,9 +189,9 @@ impl<'a> BodyFields<'a> {
     }
 
     fn all(&self, items: &[Item], without: &[&str]) -> Vec<(&'static str, Values)> {
-        let wanted = |field: &&BodyField| match field.written {
-            Written::OnRequest => self.more.contains(&field.name),
-            _ => !without.contains(&field.name),
+        let wanted = |field: &&BodyField| match field.written.needs() {
+            Some(_) => self.more.contains(&field.name),
+            None => !without.contains(&field.name),
         };
         BODY_FIELDS.iter().filter(wanted).map(|field| (field.name, self.values(field.name, items))).collect()
     }

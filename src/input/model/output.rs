@@ -5,7 +5,10 @@ use crate::scene::track::RailKind;
 use crate::scene::{Chains, Output, Scene, SceneError, Table, setting};
 use std::collections::BTreeSet;
 use std::time::Duration;
-use trackbed_io::write::{FORMATS, Format, Part, SOLID_EXTRA, SOLID_FIELDS, Written, body_fields};
+use trackbed_io::write::{
+    BodyField, FORMATS, Format, Needs, Part, SOLID_EXTRA, SOLID_FIELDS, Written, body_fields,
+    conditional_body_fields,
+};
 
 /// Default wall time between checkpoints [s].
 const CHECKPOINT: f64 = 600.0;
@@ -120,7 +123,7 @@ fn frames(scene: &Table<Scene>, o: &Table<Output>, end: f64) -> Result<u32, Scen
 fn fields(scene: &Scene, o: &Table<Output>) -> Result<Option<Vec<String>>, SceneError> {
     let solid = SOLID_FIELDS.into_iter().chain(SOLID_EXTRA).filter(|_| scene.solid.is_some());
     let bodies = body_fields(Written::ByDefault).filter(|_| !scene.grains.is_empty());
-    let more = body_fields(Written::OnRequest).filter(|name| has_extra(scene, name));
+    let more = conditional_body_fields().filter(|(_, needs)| has(scene, *needs)).map(|(field, _)| field.name);
     let known: BTreeSet<&str> = solid.chain(bodies).chain(more).collect();
     for (k, name) in o.fields.iter().flatten().enumerate() {
         if !known.contains(name.as_str()) {
@@ -170,31 +173,34 @@ fn frames_at_peaks(scene: &Scene, o: &Table<Output>) -> Result<bool, SceneError>
     Ok(o.frames_at_peaks.unwrap_or(false))
 }
 
-fn has_extra(scene: &Scene, name: &str) -> bool {
+fn has(scene: &Scene, needs: Needs) -> bool {
     !scene.grains.is_empty()
-        && match name {
+        && match needs {
+            Needs::Grains => true,
             // Periodic wrapping invalidates the initial position.
-            "displacement" | "initial_position" => scene.periodic.is_none(),
+            Needs::NoBorders => scene.periodic.is_none(),
             // No other forces.
-            "acceleration" => {
+            Needs::ContactForcesOnly => {
                 let held = scene.grains.iter().any(|g| g.prescribed_velocity.is_some());
                 !held && scene.wind.is_none() && scene.water.is_none() && scene.track.is_none()
             }
-            "stiffness_factor" => scene.material.iter().any(|m| m.stiffness_spread.is_some()),
-            _ => !scene.bond.is_empty(),
+            Needs::Spread => scene.material.iter().any(|m| m.stiffness_spread.is_some()),
+            Needs::Bonds => !scene.bond.is_empty(),
         }
 }
 
 fn extra(scene: &Scene, o: &Output) -> Vec<&'static str> {
-    let wanted = |name: &str| match &o.fields {
-        Some(named) => named.iter().any(|n| n == name),
-        None => match name {
-            "broken_bonds" | "stiffness_factor" => true,
-            "displacement" | "initial_position" => scene.runout.is_some(),
-            _ => false,
+    let wanted = |field: &BodyField| match &o.fields {
+        Some(named) => named.iter().any(|n| n == field.name),
+        None => match field.written {
+            Written::OnRequest(needs) => needs == Needs::NoBorders && scene.runout.is_some(),
+            _ => true,
         },
     };
-    body_fields(Written::OnRequest).filter(|name| has_extra(scene, name) && wanted(name)).collect()
+    conditional_body_fields()
+        .filter(|(field, needs)| has(scene, *needs) && wanted(field))
+        .map(|(field, _)| field.name)
+        .collect()
 }
 
 fn of_solid_alone(format: &Format) -> bool {

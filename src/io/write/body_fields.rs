@@ -7,8 +7,35 @@ pub enum Written {
     Always,
     /// Unless the scene selects fields.
     ByDefault,
-    /// If selected, or for bonds and slides.
-    OnRequest,
+    /// As `ByDefault`, in scenes with what it needs.
+    With(Needs),
+    /// If selected, in scenes with what it needs.
+    OnRequest(Needs),
+}
+
+impl Written {
+    /// Returns what a field needs beyond bodies.
+    pub fn needs(self) -> Option<Needs> {
+        match self {
+            Written::Always | Written::ByDefault => None,
+            Written::With(needs) | Written::OnRequest(needs) => Some(needs),
+        }
+    }
+}
+
+/// What a field needs of a scene with grains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Needs {
+    /// No more.
+    Grains,
+    /// No periodic borders: position of the start; written for slides.
+    NoBorders,
+    /// Contacts and gravity as the only forces.
+    ContactForcesOnly,
+    /// Material with a spread of stiffness.
+    Spread,
+    /// Bonds.
+    Bonds,
 }
 
 /// Field of bodies.
@@ -24,7 +51,8 @@ pub struct BodyField {
     pub written: Written,
 }
 
-use Written::{Always, ByDefault, OnRequest};
+use Needs::{Bonds, ContactForcesOnly, NoBorders, Spread};
+use Written::{Always, ByDefault, OnRequest, With};
 
 /// All fields.
 pub const BODY_FIELDS: [BodyField; 16] = [
@@ -38,12 +66,12 @@ pub const BODY_FIELDS: [BodyField; 16] = [
     field("force", "Contact force", "N", ByDefault),
     field("coordination", "Coordination", "", ByDefault),
     field("fragment", "Fragment", "", ByDefault),
-    field("displacement", "Displacement", "m", OnRequest),
-    field("initial_position", "Initial position", "m", OnRequest),
-    field("acceleration", "Acceleration", "m/s²", OnRequest),
-    field("stiffness_factor", "Stiffness over mean", "", OnRequest),
-    field("broken_bonds", "Broken bonds", "", OnRequest),
-    field("broken_by_shear", "Bonds broken by shear", "", OnRequest),
+    field("displacement", "Displacement", "m", OnRequest(NoBorders)),
+    field("initial_position", "Initial position", "m", OnRequest(NoBorders)),
+    field("acceleration", "Acceleration", "m/s²", OnRequest(ContactForcesOnly)),
+    field("stiffness_factor", "Stiffness over mean", "", With(Spread)),
+    field("broken_bonds", "Broken bonds", "", With(Bonds)),
+    field("broken_by_shear", "Bonds broken by shear", "", OnRequest(Bonds)),
 ];
 
 /// Body id on polygons of polyhedral grains, as `id` of spheres.
@@ -71,4 +99,9 @@ const fn field(name: &'static str, label: &'static str, unit: &'static str, writ
 /// Returns the fields with this condition.
 pub fn body_fields(written: Written) -> impl Iterator<Item = &'static str> {
     BODY_FIELDS.iter().filter(move |field| field.written == written).map(|field| field.name)
+}
+
+/// Returns the fields that need something beyond bodies.
+pub fn conditional_body_fields() -> impl Iterator<Item = (&'static BodyField, Needs)> {
+    BODY_FIELDS.iter().filter_map(|field| Some((field, field.written.needs()?)))
 }

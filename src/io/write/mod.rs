@@ -32,7 +32,8 @@ pub mod vtu;
 pub mod writer;
 
 pub use body_fields::{
-    BODY_FIELDS, BodyField, MADE_FIELDS, STONE_BODY, STONE_CENTRE, Written, body_field, body_fields,
+    BODY_FIELDS, BodyField, MADE_FIELDS, Needs, STONE_BODY, STONE_CENTRE, Written, body_field, body_fields,
+    conditional_body_fields,
 };
 pub use choice::{Choice, SOLID_EXTRA, SOLID_FIELDS};
 pub use error::WriteError;

@@ -1,4 +1,4 @@
-use super::body_fields::{BODY_FIELDS, Written};
+use super::body_fields::BODY_FIELDS;
 use super::frame::{GrainFrame, Values};
 pub use crate::scratch::folder;
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ pub fn grains(count: usize, vector: impl Fn(usize) -> [f64; 3]) -> GrainFrame {
         "coordination" => Values::Counts(vec![6; count]),
         _ => Values::Vectors(vectors()),
     };
-    let written = BODY_FIELDS.iter().filter(|field| field.written != Written::OnRequest);
+    let written = BODY_FIELDS.iter().filter(|field| field.written.needs().is_none());
     let fields = written.map(|field| (field.name, values(field.name))).collect();
     GrainFrame { position: vectors(), fields }
 }
