@@ -68,13 +68,14 @@ impl Mesh {
         let mut middles: HashMap<[u32; 2], u32> = HashMap::new();
         let edge = |nodes: &[u32], [a, b]: [usize; 2]| [nodes[a].min(nodes[b]), nodes[a].max(nodes[b])];
         for (nodes, kind) in self.connectivity.iter().zip(self.connectivity.kinds()) {
-            for (corners, &middle) in kind.edges().iter().zip(&nodes[kind.corner_count()..]) {
+            for (corners, &middle) in kind.edges().iter().zip(kind.mid_sides(nodes)) {
                 middles.insert(edge(nodes, *corners), middle);
             }
         }
         for (nodes, kind) in self.connectivity.iter().zip(self.connectivity.kinds()) {
-            let mut all = nodes.to_vec();
-            if kind.is_linear() {
+            let mid_sides = kind.mid_sides(nodes);
+            let mut all = [&nodes[..kind.corner_count()], mid_sides].concat();
+            if mid_sides.is_empty() {
                 for corners in kind.edges() {
                     let [a, b] = edge(nodes, *corners);
                     all.push(*middles.entry([a, b]).or_insert_with(|| {

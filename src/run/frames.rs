@@ -12,65 +12,51 @@ use trackbed_input::model::OutputPlan;
 use trackbed_input::model::grains::{GrainsPart, MaterialsPart};
 use trackbed_io::failure::Failure;
 use trackbed_io::write::{
-    BODY_FIELDS, BodyField, ChainFrame, Frame, GrainFrame, NO_BODY, Part, STONE_BODY, STONE_CENTRE,
-    SolidFrame, Values, WallFrame, WallKind, Writers, Written,
+    BODY_FIELDS, ChainFrame, Frame, FrameField, GrainFrame, NO_BODY, NodalValues, Part, SOLID_FIELDS,
+    STONE_BODY, STONE_CENTRE, SolidFrame, Values, WallFrame, WallKind, Writers,
 };
 
 /// Elastic material: inside by definition.
 const NO_YIELD_SURFACE: f64 = -1.0;
 
-struct SolidFields {
-    stress: Vec<[f64; 6]>,
-    von_mises: Vec<f64>,
-    equivalent_plastic_strain: Vec<f64>,
-    yield_function: Vec<f64>,
-    tensors: Vec<(&'static str, Vec<[f64; 6]>)>,
-}
-
-impl SolidFields {
-    fn of(view: SolidView<'_>, extra: &[&'static str]) -> SolidFields {
-        let SolidView { model, state } = view;
-        let (stress, equivalent_plastic_strain, yield_function) = if state.points.is_empty() {
-            let nodes = model.mesh().node_count();
-            (stress::nodal(model, &state.u), vec![0.0; nodes], vec![NO_YIELD_SURFACE; nodes])
-        } else {
-            (
-                stress::nodal_of_points(model, state),
-                stress::nodal_kappa(model, state),
-                finite_yield_function(stress::nodal_yield_function(model, state)),
-            )
-        };
-        let von_mises = stress.iter().map(stress::von_mises).collect();
-        let tensors = extra.iter().map(|name| (*name, strains(view, *name == "plastic_strain"))).collect();
-        SolidFields { stress, von_mises, equivalent_plastic_strain, yield_function, tensors }
-    }
-
-    fn frame<'a>(&'a self, view: SolidView<'a>) -> SolidFrame<'a> {
-        SolidFrame {
-            mesh: view.model.mesh(),
-            displacement: &view.state.u,
-            velocity: &view.state.v,
-            stress: &self.stress,
-            von_mises: &self.von_mises,
-            equivalent_plastic_strain: &self.equivalent_plastic_strain,
-            yield_function: &self.yield_function,
-            tensors: &self.tensors,
-        }
-    }
-}
-
-/// Extrapolated from Gauss points like stresses.
-fn strains(view: SolidView<'_>, plastic: bool) -> Vec<[f64; 6]> {
+fn solid_frame<'a>(view: SolidView<'a>, extra: &[&'static str]) -> SolidFrame<'a> {
     let SolidView { model, state } = view;
-    if plastic && state.points.is_empty() {
-        return vec![[0.0; 6]; model.mesh().node_count()];
-    }
-    stress::nodal_from_points(model, |element, p| {
-        if plastic {
-            return stress::tensor(state.points[p].plastic_strain);
+    let stress = if state.points.is_empty() {
+        stress::nodal(model, &state.u)
+    } else {
+        stress::nodal_of_points(model, state)
+    };
+    let wanted = |field: &&FrameField| field.written.needs().is_none() || extra.contains(&field.name);
+    let fields = SOLID_FIELDS.iter().filter(wanted);
+    let fields = fields.map(|field| (field.name, solid_values(view, field.name, &stress))).collect();
+    SolidFrame { mesh: model.mesh(), fields }
+}
+
+/// Without Gauss points the solid is elastic.
+fn solid_values<'a>(view: SolidView<'a>, name: &str, stress: &[[f64; 6]]) -> NodalValues<'a> {
+    use NodalValues::{Numbers, Tensors, Vectors};
+    let SolidView { model, state } = view;
+    let (elastic, nodes) = (state.points.is_empty(), model.mesh().node_count());
+    match name {
+        "displacement" => Vectors((&state.u).into()),
+        "velocity" => Vectors((&state.v).into()),
+        "stress" => Tensors(stress.to_vec().into()),
+        "von_mises" => Numbers(stress.iter().map(stress::von_mises).collect()),
+        "equivalent_plastic_strain" if elastic => Numbers(vec![0.0; nodes].into()),
+        "equivalent_plastic_strain" => Numbers(stress::nodal_kappa(model, state).into()),
+        "yield_function" if elastic => Numbers(vec![NO_YIELD_SURFACE; nodes].into()),
+        "yield_function" => Numbers(finite_yield_function(stress::nodal_yield_function(model, state)).into()),
+        "strain" => {
+            let at = |element, p| stress::strain_at_point(model, &state.u, element, p);
+            Tensors(stress::nodal_from_points(model, at).into())
         }
-        stress::strain_at_point(model, &state.u, element, p)
-    })
+        "plastic_strain" if elastic => Tensors(vec![[0.0; 6]; nodes].into()),
+        "plastic_strain" => {
+            let at = |_, p: usize| stress::tensor(state.points[p].plastic_strain);
+            Tensors(stress::nodal_from_points(model, at).into())
+        }
+        other => unreachable!("the field {other} of the solid has no values"),
+    }
 }
 
 /// Grains of a frame with display options.
@@ -94,13 +80,11 @@ pub struct Shown<'a> {
 pub fn write(
     writers: &mut Writers,
     (number, time): (usize, f64),
-    (solid, tensors): (Option<SolidView<'_>>, &[&'static str]),
+    (solid, solid_extra): (Option<SolidView<'_>>, &[&'static str]),
     grains: Option<Shown<'_>>,
 ) -> Result<(), Failure> {
-    let solid =
-        solid.filter(|_| writers.show(Part::Solid)).map(|view| (SolidFields::of(view, tensors), view));
-    let mut frame = Frame { number, time, ..Frame::default() };
-    frame.solid = solid.as_ref().map(|(fields, view)| fields.frame(*view));
+    let solid = solid.filter(|_| writers.show(Part::Solid)).map(|view| solid_frame(view, solid_extra));
+    let frame = Frame { number, time, solid: solid.as_ref(), ..Frame::default() };
     let Some(Shown { view, part, strong_only, extra, draw }) = grains else {
         return Ok(writers.frame(&frame)?);
     };
@@ -134,7 +118,7 @@ pub fn write(
 /// As [`write`].
 pub fn write_state(dir: &Path, output: &OutputPlan, view: SolidView<'_>) -> Result<(), Failure> {
     let mut writers = Writers::begin(dir, &output.formats)?.only(&output.fields);
-    write(&mut writers, (0, 0.0), (Some(view), &output.tensors), None)?;
+    write(&mut writers, (0, 0.0), (Some(view), &output.solid_extra), None)?;
     Ok(writers.end()?)
 }
 
@@ -189,9 +173,9 @@ impl<'a> BodyFields<'a> {
     }
 
     fn all(&self, items: &[Item], without: &[&str]) -> Vec<(&'static str, Values)> {
-        let wanted = |field: &&BodyField| match field.written {
-            Written::OnRequest => self.more.contains(&field.name),
-            _ => !without.contains(&field.name),
+        let wanted = |field: &&FrameField| match field.written.needs() {
+            Some(_) => self.more.contains(&field.name),
+            None => !without.contains(&field.name),
         };
         BODY_FIELDS.iter().filter(wanted).map(|field| (field.name, self.values(field.name, items))).collect()
     }

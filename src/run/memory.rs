@@ -85,8 +85,9 @@ fn line(part: &SolidPart, regime: Regime, method: Method) -> Result<(String, Val
         Regime::Statics => ("statics", &part.equations.statics_reason),
         Regime::Dynamics => ("steps", &part.equations.dynamics_reason),
     };
-    let factor = method_bytes(part, Method::Direct, regime)?;
-    let iteration = method_bytes(part, Method::Iterative { tolerance: Method::WINDOW_TOLERANCE }, regime)?;
+    let of = |method| method_bytes(part, method, regime);
+    let factor = of(Method::Direct)?;
+    let iteration = of(Method::Iterative { tolerance: Method::WINDOW_TOLERANCE })?;
     let mut value = json!({
         "of": what,
         "method": method.name(),
@@ -94,19 +95,19 @@ fn line(part: &SolidPart, regime: Regime, method: Method) -> Result<(String, Val
         "factor_bytes": factor,
         "iteration_bytes": iteration,
     });
-    let (own, other) = match method {
-        Method::Direct => (factor, format!("conjugate gradients: {}", size(iteration))),
-        Method::Iterative { .. } => (iteration, format!("direct solver: {}", size(factor))),
-        // MUMPS.
-        _ => {
-            let own = method_bytes(part, method, regime)?;
-            value[format!("{}_bytes", method.name())] = own.into();
-            let (factor, iteration) = (size(factor), size(iteration));
-            let other = format!("direct solver: {factor}, conjugate gradients: {iteration}");
-            (own, other)
+    let compared = [("direct", "direct solver", factor), ("iterative", "conjugate gradients", iteration)];
+    let is_own = |(name, ..): &(&str, &str, u64)| *name == method.name();
+    let own = match compared.iter().find(|c| is_own(c)) {
+        Some((_, _, bytes)) => *bytes,
+        None => {
+            let bytes = of(method)?;
+            value[format!("{}_bytes", method.name())] = bytes.into();
+            bytes
         }
     };
-    Ok((format!("equations of {what}: {method} ({reason}), {}; {other}", size(own)), value))
+    let others = compared.iter().filter(|c| !is_own(c));
+    let other: Vec<String> = others.map(|(_, title, bytes)| format!("{title}: {}", size(*bytes))).collect();
+    Ok((format!("equations of {what}: {method} ({reason}), {}; {}", size(own), other.join(", ")), value))
 }
 
 fn refused(total: u64, expected: &str) -> Failure {

@@ -58,6 +58,11 @@ impl<'a, T> Table<'a, T> {
         if self.place.is_empty() { key.to_string() } else { format!("{}.{key}", self.place) }
     }
 
+    /// Whether the scene gives `key` here.
+    pub fn has(&self, key: &str) -> bool {
+        self.document.has(&self.path(key))
+    }
+
     /// Resolves a path relative to the scene's directory.
     pub fn locate(&self, file: &Path) -> PathBuf {
         self.document.resolve(file)

@@ -61,6 +61,17 @@ pub trait BodyShape {
         None
     }
 
+    /// Signed distance of a point from the surface at a scale, negative inside [m]; `None`: grains are inserted outside
+    /// the bounding sphere.
+    fn distance(&self, _scale: f64, _point: &Vec3) -> Option<f64> {
+        None
+    }
+
+    /// Why bodies of this shape are neither inserted nor removed during a run.
+    fn permanent(&self) -> Option<&'static str> {
+        None
+    }
+
     /// Surface for output; `None` of spheres.
     fn outline(&self) -> Option<Outline> {
         None

@@ -104,6 +104,14 @@ impl BodyShape for Cuboid {
         (span.0 < span.1).then_some(span)
     }
 
+    fn distance(&self, scale: f64, point: &Vec3) -> Option<f64> {
+        Some(closest_point(&(Vec3::from(self.half) * scale), point).2)
+    }
+
+    fn permanent(&self) -> Option<&'static str> {
+        Some("it is a box")
+    }
+
     fn outline(&self) -> Option<Outline> {
         let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         let corners = (0..8).map(|k| corner(&Vec3::from(self.half), k));

@@ -52,7 +52,8 @@ impl Shape {
     pub fn bounding_half(&self, scale: f64) -> Vec3 {
         match self {
             Shape::Polyhedron(it) => it.half_extents() * scale,
-            _ => self.half_sides(scale),
+            Shape::Box { .. } => self.half_sides(scale),
+            Shape::Sphere { .. } | Shape::Clump(_) => Vec3::zeros(),
         }
     }
 

@@ -2,7 +2,6 @@
 
 use crate::bodies::table::BodyKind;
 use crate::engine::model::Model;
-use crate::shape::Shape;
 
 /// Name of an unsupported feature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -14,13 +13,12 @@ pub struct Unsupported(pub &'static str);
 /// # Errors
 /// [`Unsupported`] for the first unsupported feature.
 pub fn check(model: &Model) -> Result<(), Unsupported> {
-    let shape = |k: usize| model.shape(k);
     let bodies = || 0..model.body_count();
     let solid = |k: usize| model.body(k).kind == BodyKind::Solid;
     // Rotation about some axes only requires solving a system of equations.
     let about_some = |k: usize| {
         let fixed = model.body(k).fixed >> 3;
-        matches!(shape(k), Shape::Clump(_)) && fixed != 0 && fixed != 7
+        model.body(k).kind == BodyKind::Clump && fixed != 0 && fixed != 7
     };
     let all = [
         (bodies().any(about_some), "clumps that rotate about some axes only"),

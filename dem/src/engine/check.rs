@@ -3,7 +3,7 @@
 use super::input::{ModelInput, SearchSkin, TimeStep};
 use super::timestep;
 use crate::base::error::ModelError;
-use crate::bodies::table::{Bodies, Body, BodyKind};
+use crate::bodies::table::{Bodies, Body};
 use crate::law::material::Material;
 use crate::law::parameter::{self, first_invalid};
 use crate::law::{self, Laws, conical_damage};
@@ -85,8 +85,8 @@ fn bodies(input: &ModelInput) -> Result<(), ModelError> {
                 return Err(error(quantity, value, "be finite"));
             }
         }
-        if b.absent && matches!(input.shapes[b.shape], Shape::Box { .. }) {
-            return Err(ModelError::Absent { body: index, problem: "it is a box" });
+        if let Some(problem) = input.shapes[b.shape].query(|s| s.permanent()).filter(|_| b.absent) {
+            return Err(ModelError::Absent { body: index, problem });
         }
         if (b.orientation.norm() - 1.0).abs() > 1e-6 || b.orientation.norm().is_nan() {
             return Err(error("norm of the orientation", b.orientation.norm(), "be 1"));
@@ -201,7 +201,7 @@ pub(crate) fn rigid_pairs(bodies: &Bodies, input: &ModelInput, laws: &Laws) -> R
             return error(names.plane(p));
         }
         // Boxes interact with neither.
-        if a.kind != BodyKind::Solid || input.shapes[a.shape].dilated() {
+        if !matches!(input.shapes[a.shape], Shape::Box { .. }) {
             if let Some(t) = input.triangles.iter().position(|t| endless(a.material, t.material)) {
                 return error(format!("triangle surface {t}"));
             }

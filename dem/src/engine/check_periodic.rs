@@ -6,6 +6,7 @@ use crate::base::Vec3;
 use crate::base::error::ModelError;
 use crate::bodies::table::{Bodies, Body, BodyKind};
 use crate::body_force::BodyForce;
+use crate::shape::Shape;
 use crate::spatial::patchwork::Patch;
 
 /// Whether bodies that bonds join extend over a whole period.
@@ -47,12 +48,7 @@ fn reach(input: &ModelInput, k: usize, body: &Body, axis: usize) -> f64 {
     let kept = (0..3).filter(|d| *d != axis).all(|d| body.fixed >> (3 + d) & 1 == 1);
     let turned = input.bodies[k].orientation.to_rotation_matrix();
     let straight = turned.matrix()[(axis, axis)].abs() > 1.0 - 1e-12;
-    if body.kind == BodyKind::Solid
-        && !shape.dilated()
-        && kept
-        && straight
-        && input.bodies[k].spin.norm() == 0.0
-    {
+    if matches!(shape, Shape::Box { .. }) && kept && straight && input.bodies[k].spin.norm() == 0.0 {
         return shape.bounding_half(body.scale)[axis];
     }
     body.radius

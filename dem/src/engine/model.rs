@@ -337,10 +337,6 @@ impl Model {
         self.skin
     }
 
-    pub(crate) fn half(&self, body: usize) -> Vec3 {
-        self.shape(body).half_sides(self.body(body).scale)
-    }
-
     /// Number of walls, triangle surfaces included.
     pub fn wall_count(&self) -> usize {
         self.walls.walls.len()

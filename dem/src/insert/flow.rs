@@ -7,7 +7,6 @@
 use crate::base::Vec3;
 use crate::base::error::StepError;
 use crate::bodies::block::Rotation;
-use crate::bodies::table::BodyKind;
 use crate::engine::back_end::BackEnd;
 use crate::engine::block_layout::BodyState;
 use crate::engine::model::Model;
@@ -65,13 +64,16 @@ pub fn exchange(
 ) -> Result<(), FlowError> {
     let bonded = bonded(model);
     let check = |body: usize, what: &'static str, here: Option<bool>| {
+        let permanent = || model.shape(body).query(|s| s.permanent());
         let problem = match here {
             None => "there is no such body",
             Some(false) if what == "taken out" => "it is not there",
             Some(true) if what == "put in" => "it is there already",
-            _ if model.bodies.kind(body) == BodyKind::Solid && !model.shape(body).dilated() => "it is a box",
-            _ if bonded.get(body).is_some_and(|b| *b) => "a bond holds it",
-            _ => return Ok(()),
+            _ => match permanent() {
+                Some(problem) => problem,
+                None if bonded.get(body).is_some_and(|b| *b) => "a bond holds it",
+                None => return Ok(()),
+            },
         };
         Err(FlowError::Body { body, what, problem })
     };

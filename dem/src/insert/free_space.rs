@@ -10,7 +10,6 @@ use crate::engine::model::Model;
 use crate::engine::state::State;
 use crate::lanes::vec4::xyz;
 use crate::measure::BoxRegion;
-use crate::shape::cuboid;
 use crate::spatial::surface::Surface;
 use nalgebra::UnitQuaternion;
 
@@ -28,8 +27,8 @@ pub struct FreeSpace<'a> {
     surface: &'a dyn Surface,
     region: BoxRegion,
     spheres: Grid,
-    /// Centre, orientation, half lengths.
-    boxes: Vec<(Vec3, UnitQuaternion<f64>, Vec3)>,
+    /// Centre, orientation, body.
+    solids: Vec<(Vec3, UnitQuaternion<f64>, usize)>,
     patches: Vec<u32>,
 }
 
@@ -44,7 +43,7 @@ impl<'a> FreeSpace<'a> {
         without: impl Fn(usize) -> bool,
     ) -> FreeSpace<'a> {
         let mut near: Vec<(Vec3, f64)> = Vec::new();
-        let mut boxes = Vec::new();
+        let mut solids = Vec::new();
         let meets = |x: &Vec3, r: f64| (0..3).all(|d| x[d] + r > region.low[d] && x[d] - r < region.high[d]);
         let images = images(model);
         for block in &state.blocks {
@@ -55,8 +54,8 @@ impl<'a> FreeSpace<'a> {
                 }
                 let (centre, reach) = (xyz(&block.centre[k]), block.centre[k][3]);
                 let solid = model.bodies.kind(body) == BodyKind::Solid;
-                if solid && !model.shape(body).dilated() {
-                    boxes.push((centre, block.rotation[k].orientation, model.half(body)));
+                if distance(model, body, &Vec3::zeros()).is_some() {
+                    solids.push((centre, block.rotation[k].orientation, body));
                     continue;
                 }
                 let back = model.wrap(&centre) - centre;
@@ -77,7 +76,7 @@ impl<'a> FreeSpace<'a> {
         let radii = near.iter().map(|s| s.1).fold(largest, f64::max) * (1.0 + GAP);
         let mut spheres = Grid::new(region.low, region.high, 2.0 * radii, radii);
         near.into_iter().for_each(|(x, r)| spheres.add(x, r));
-        FreeSpace { model, state, surface, region, spheres, boxes, patches: Vec::new() }
+        FreeSpace { model, state, surface, region, spheres, solids, patches: Vec::new() }
     }
 
     /// Occupies the position of a simultaneously inserted grain; `radius` [m].
@@ -113,17 +112,23 @@ impl<'a> FreeSpace<'a> {
             .iter()
             .zip(&state.planes)
             .all(|(plane, now)| now.open || (x - plane.point - now.offset).dot(&plane.normal) >= r);
-        let clear_of_boxes = || {
-            self.boxes.iter().all(|(centre, turn, half)| {
-                cuboid::closest_point(half, &turn.inverse_transform_vector(&(x - centre))).2 >= r
+        let clear_of_solids = || {
+            self.solids.iter().all(|(centre, turn, body)| {
+                let point = turn.inverse_transform_vector(&(x - centre));
+                distance(model, *body, &point).is_none_or(|distance| distance >= r)
             })
         };
-        if !(clear_of_planes && self.spheres.free(x, r) && clear_of_boxes()) {
+        if !(clear_of_planes && self.spheres.free(x, r) && clear_of_solids()) {
             return false;
         }
         let walls = model.walls.placed(&state.walls);
         clear_of(&walls, x, r, &mut self.patches) && clear_of(self.surface, x, r, &mut self.patches)
     }
+}
+
+/// Distance from a body of a point in its frame [m], where its shape has one.
+fn distance(model: &Model, body: usize, point: &Vec3) -> Option<f64> {
+    model.shape(body).query(|s| s.distance(model.body(body).scale, point))
 }
 
 /// Returns true if a sphere is clear of a surface, on its outer side if one-sided.

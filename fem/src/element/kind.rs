@@ -85,6 +85,17 @@ impl ElementKind {
         self as usize == self.linear() as usize
     }
 
+    /// Whether it has a node on each edge.
+    #[inline]
+    pub const fn has_mid_sides(self) -> bool {
+        self as usize == self.quadratic() as usize
+    }
+
+    /// Returns its mid-side nodes among `nodes`, in the order of [`ElementKind::edges`].
+    pub fn mid_sides(self, nodes: &[u32]) -> &[u32] {
+        if self.has_mid_sides() { &nodes[self.corner_count()..] } else { &[] }
+    }
+
     /// Kind of the same shape without mid-side nodes.
     #[inline]
     pub const fn linear(self) -> ElementKind {
@@ -178,11 +189,9 @@ mod tests {
             let shape = kind.shape_functions(kind.natural_centre());
             assert!((shape.iter().sum::<f64>() - 1.0).abs() < 1e-14);
             assert!(shape[n..].iter().all(|v| *v == 0.0));
-            assert_eq!(kind.linear().edges().len() + kind.corner_count(), {
-                let quadratic =
-                    ElementKind::ALL.iter().find(|k| !k.is_linear() && k.linear() == kind.linear());
-                quadratic.unwrap().node_count()
-            });
+            let quadratic = kind.quadratic();
+            assert!(quadratic.has_mid_sides() && quadratic.linear() == kind.linear());
+            assert_eq!(kind.edges().len() + kind.corner_count(), quadratic.node_count());
         }
     }
 
@@ -206,7 +215,7 @@ mod tests {
                 [(kind.properties().mass_rule, 1e-13), (full, 1e-13), (middle, fewer), (reduced, fewer)];
             on_kind!(kind, element => {
                 checks::nodal(&element::NATURAL, element::shape_functions);
-                checks::complete(&element::NATURAL, element::shape_functions, 2 - i32::from(kind.is_linear()));
+                checks::complete(&element::NATURAL, element::shape_functions, 1 + i32::from(kind.has_mid_sides()));
                 checks::differences(&element::NATURAL, element::shape_functions, element::gradients);
                 checks::faces(&element::NATURAL, element::shape_functions, &element::FACES);
                 for (rule, tolerance) in own.iter().chain(also) {
@@ -218,7 +227,7 @@ mod tests {
 
     #[test]
     fn mid_sides_follow_the_edges() {
-        for kind in ElementKind::ALL.into_iter().filter(|k| !k.is_linear()) {
+        for kind in ElementKind::ALL.into_iter().filter(|k| k.has_mid_sides()) {
             for (m, [a, b]) in kind.edges().iter().enumerate() {
                 let x = kind.natural();
                 for k in 0..3 {
@@ -231,7 +240,7 @@ mod tests {
 
     #[test]
     fn faces_contain_mid_sides_of_edges() {
-        for kind in ElementKind::ALL.into_iter().filter(|k| !k.is_linear()) {
+        for kind in ElementKind::ALL.into_iter().filter(|k| k.has_mid_sides()) {
             for face in kind.faces() {
                 let corners = face.len() / 2;
                 for c in 0..corners {

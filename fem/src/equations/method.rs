@@ -83,6 +83,16 @@ impl Method {
         }
     }
 
+    /// Stiffness products of a static solve, if iterative: about 60 iterations of 12, mostly single precision, and set-up.
+    pub fn statics_products(self) -> Option<f64> {
+        matches!(self, Method::Iterative { .. }).then_some(560.0)
+    }
+
+    /// Whether it runs on one thread only.
+    pub fn is_serial(self) -> bool {
+        matches!(self, Method::Mumps(_))
+    }
+
     pub(crate) fn tolerance(self) -> f64 {
         if let Method::Iterative { tolerance } = self { tolerance } else { 0.0 }
     }

@@ -5,7 +5,7 @@ use crate::scene::track::RailKind;
 use crate::scene::{Chains, Output, Scene, SceneError, Table, setting};
 use std::collections::BTreeSet;
 use std::time::Duration;
-use trackbed_io::write::{FORMATS, Format, Part, SOLID_EXTRA, SOLID_FIELDS, Written, body_fields};
+use trackbed_io::write::{BODY_FIELDS, FORMATS, Format, FrameField, Needs, Part, SOLID_FIELDS, Written};
 
 /// Default wall time between checkpoints [s].
 const CHECKPOINT: f64 = 600.0;
@@ -31,8 +31,8 @@ pub struct OutputPlan {
     pub fields: Option<Vec<String>>,
     /// Additional grain fields.
     pub extra: Vec<&'static str>,
-    /// Additional tensors of the solid.
-    pub tensors: Vec<&'static str>,
+    /// Additional fields of the solid.
+    pub solid_extra: Vec<&'static str>,
     /// Detailed last part: duration [s], frames.
     pub last: Option<(f64, u32)>,
     /// Times of additional frames [s].
@@ -78,11 +78,8 @@ impl OutputPlan {
             packing: o.packing.unwrap_or(false),
             state: o.state.unwrap_or(true),
             fields: fields(scene, &o)?,
-            extra: extra(scene, &o),
-            tensors: SOLID_EXTRA
-                .into_iter()
-                .filter(|name| o.fields.iter().flatten().any(|n| n == name))
-                .collect(),
+            extra: extra(scene, &o, of_bodies(scene)),
+            solid_extra: extra(scene, &o, of_solid(scene)),
             last: last(scene, &o, end, frames)?,
             frames_at: frames_at(&o, end)?,
             frames_at_peaks: frames_at_peaks(scene, &o)?,
@@ -118,10 +115,11 @@ fn frames(scene: &Table<Scene>, o: &Table<Output>, end: f64) -> Result<u32, Scen
 }
 
 fn fields(scene: &Scene, o: &Table<Output>) -> Result<Option<Vec<String>>, SceneError> {
-    let solid = SOLID_FIELDS.into_iter().chain(SOLID_EXTRA).filter(|_| scene.solid.is_some());
-    let bodies = body_fields(Written::ByDefault).filter(|_| !scene.grains.is_empty());
-    let more = body_fields(Written::OnRequest).filter(|name| has_extra(scene, name));
-    let known: BTreeSet<&str> = solid.chain(bodies).chain(more).collect();
+    let offered = |field: &&FrameField| {
+        field.written != Written::Always && field.written.needs().is_none_or(|needs| has(scene, needs))
+    };
+    let all = of_solid(scene).iter().chain(of_bodies(scene));
+    let known: BTreeSet<&str> = all.filter(offered).map(|field| field.name).collect();
     for (k, name) in o.fields.iter().flatten().enumerate() {
         if !known.contains(name.as_str()) {
             let expected = format!("one of {}", known.iter().copied().collect::<Vec<_>>().join(", "));
@@ -170,31 +168,39 @@ fn frames_at_peaks(scene: &Scene, o: &Table<Output>) -> Result<bool, SceneError>
     Ok(o.frames_at_peaks.unwrap_or(false))
 }
 
-fn has_extra(scene: &Scene, name: &str) -> bool {
-    !scene.grains.is_empty()
-        && match name {
-            // Periodic wrapping invalidates the initial position.
-            "displacement" | "initial_position" => scene.periodic.is_none(),
-            // No other forces.
-            "acceleration" => {
-                let held = scene.grains.iter().any(|g| g.prescribed_velocity.is_some());
-                !held && scene.wind.is_none() && scene.water.is_none() && scene.track.is_none()
-            }
-            "stiffness_factor" => scene.material.iter().any(|m| m.stiffness_spread.is_some()),
-            _ => !scene.bond.is_empty(),
-        }
+fn of_solid(scene: &Scene) -> &'static [FrameField] {
+    if scene.solid.is_some() { &SOLID_FIELDS } else { &[] }
 }
 
-fn extra(scene: &Scene, o: &Output) -> Vec<&'static str> {
-    let wanted = |name: &str| match &o.fields {
-        Some(named) => named.iter().any(|n| n == name),
-        None => match name {
-            "broken_bonds" | "stiffness_factor" => true,
-            "displacement" | "initial_position" => scene.runout.is_some(),
-            _ => false,
+fn of_bodies(scene: &Scene) -> &'static [FrameField] {
+    if scene.grains.is_empty() { &[] } else { &BODY_FIELDS }
+}
+
+fn has(scene: &Scene, needs: Needs) -> bool {
+    match needs {
+        Needs::Nothing => true,
+        // Periodic wrapping invalidates the initial position.
+        Needs::NoBorders => scene.periodic.is_none(),
+        // No other forces.
+        Needs::ContactForcesOnly => {
+            let held = scene.grains.iter().any(|g| g.prescribed_velocity.is_some());
+            !held && scene.wind.is_none() && scene.water.is_none() && scene.track.is_none()
+        }
+        Needs::Spread => scene.material.iter().any(|m| m.stiffness_spread.is_some()),
+        Needs::Bonds => !scene.bond.is_empty(),
+    }
+}
+
+fn extra(scene: &Scene, o: &Output, fields: &'static [FrameField]) -> Vec<&'static str> {
+    let wanted = |field: &FrameField| match &o.fields {
+        Some(named) => named.iter().any(|n| n == field.name),
+        None => match field.written {
+            Written::OnRequest(needs) => needs == Needs::NoBorders && scene.runout.is_some(),
+            _ => true,
         },
     };
-    body_fields(Written::OnRequest).filter(|name| has_extra(scene, name) && wanted(name)).collect()
+    let possible = |field: &FrameField| field.written.needs().is_some_and(|needs| has(scene, needs));
+    fields.iter().filter(|field| possible(field) && wanted(field)).map(|field| field.name).collect()
 }
 
 fn of_solid_alone(format: &Format) -> bool {

@@ -101,7 +101,7 @@ impl From<Lists> for MeshFile {
         let Lists { mesh, constraints, warnings, unit } = lists;
         let mut element_types: Vec<(String, usize)> = Vec::new();
         for kind in mesh.connectivity.kinds() {
-            let (family, nodes) = if kind.is_linear() { (185, 8) } else { (186, 20) };
+            let (family, nodes) = if kind.has_mid_sides() { (186, 20) } else { (185, 8) };
             let name = format!("SOLID{family} form of {nodes} nodes {}", kind.name());
             match element_types.iter_mut().find(|(n, _)| *n == name) {
                 Some((_, count)) => *count += 1,

@@ -101,8 +101,9 @@ pub fn from_brick(ids: &[u32]) -> Result<(ElementKind, Vec<u32>), Fault> {
 /// Brick of 20 or 8 nodes that [`from_brick`] reads as this element.
 pub fn to_brick(kind: ElementKind, nodes: &[u32]) -> Vec<u32> {
     let form = FORMS.iter().find(|form| form.kind.shape() == kind.shape()).unwrap_or(&FORMS[0]);
-    let mut brick = vec![0; if kind.is_linear() { 8 } else { 20 }];
-    for (p, node) in form.nodes.iter().zip(nodes) {
+    let (size, count) = if kind.has_mid_sides() { (20, form.nodes.len()) } else { (8, kind.corner_count()) };
+    let mut brick = vec![0; size];
+    for (p, node) in form.nodes[..count].iter().zip(nodes) {
         brick[*p] = *node;
     }
     for &(p, of) in form.repeats {

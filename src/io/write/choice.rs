@@ -1,13 +1,8 @@
 //! Selection of frame fields.
 
-use super::body_fields::{Written, body_fields};
-
-/// Default fields of the solid.
-pub const SOLID_FIELDS: [&str; 5] =
-    ["velocity", "stress", "von_mises", "equivalent_plastic_strain", "yield_function"];
-
-/// Optional fields of the solid.
-pub const SOLID_EXTRA: [&str; 2] = ["strain", "plastic_strain"];
+use super::body_fields::BODY_FIELDS;
+use super::fields::Written;
+use super::solid_fields::SOLID_FIELDS;
 
 /// Written fields: all, or the named ones and those required for drawing.
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,7 +11,8 @@ pub struct Choice<'a>(pub Option<&'a [String]>);
 impl Choice<'_> {
     /// Whether a field is written.
     pub fn has(self, name: &str) -> bool {
-        let free = SOLID_FIELDS.contains(&name) || body_fields(Written::ByDefault).any(|field| field == name);
+        let mut fields = SOLID_FIELDS.iter().chain(&BODY_FIELDS);
+        let free = fields.any(|field| field.name == name && field.written == Written::ByDefault);
         !free || self.0.is_none_or(|names| names.iter().any(|n| n == name))
     }
 }

@@ -1,6 +1,7 @@
 //! Plain arrays of a run's state, for result files.
 
 use super::choice::Choice;
+use std::borrow::Cow;
 use trackbed_fem::mesh::Mesh;
 
 /// Snapshot; absent parts are `None`.
@@ -13,7 +14,7 @@ pub struct Frame<'a> {
     /// Selected fields.
     pub fields: Choice<'a>,
     /// Solid.
-    pub solid: Option<SolidFrame<'a>>,
+    pub solid: Option<&'a SolidFrame<'a>>,
     /// Grains, one item per sphere.
     pub grains: Option<&'a GrainFrame>,
     /// Grain contacts.
@@ -23,53 +24,26 @@ pub struct Frame<'a> {
 }
 
 /// Solid in undeformed coordinates; add `displacement` for the deformed shape.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct SolidFrame<'a> {
     /// Mesh.
     pub mesh: &'a Mesh,
-    /// Displacement [m]. Shape `[3 * nodes]`.
-    pub displacement: &'a [f64],
-    /// Velocity [m/s]. Shape `[3 * nodes]`.
-    pub velocity: &'a [f64],
-    /// Nodal stress, tension positive: xx, yy, zz, xy, yz, zx [Pa]. Shape `[nodes]`.
-    pub stress: &'a [[f64; 6]],
-    /// Nodal von Mises stress [Pa]. Shape `[nodes]`.
-    pub von_mises: &'a [f64],
-    /// Nodal equivalent plastic strain [1]. Shape `[nodes]`.
-    pub equivalent_plastic_strain: &'a [f64],
-    /// Nodal yield function, negative inside the surface [Pa]. Shape `[nodes]`.
-    pub yield_function: &'a [f64],
-    /// Optional nodal tensors by name: xx, yy, zz, xy, yz, zx. Shape `[nodes]` each.
-    pub tensors: &'a [(&'static str, Vec<[f64; 6]>)],
+    /// Nodal fields by name, see [`super::SOLID_FIELDS`]; all writers take theirs from here.
+    pub fields: Vec<(&'static str, NodalValues<'a>)>,
 }
 
 /// Values of a nodal field.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum NodalValues<'a> {
     /// Number per node.
-    Numbers(&'a [f64]),
+    Numbers(Cow<'a, [f64]>),
     /// Three numbers per node. Shape `[3 * nodes]`.
-    Vectors(&'a [f64]),
+    Vectors(Cow<'a, [f64]>),
     /// Symmetric tensor per node: xx, yy, zz, xy, yz, zx.
-    Tensors(&'a [[f64; 6]]),
+    Tensors(Cow<'a, [[f64; 6]]>),
 }
 
 impl<'a> SolidFrame<'a> {
-    /// Returns the nodal fields by name; all writers take theirs from here.
-    pub fn fields(&self) -> Vec<(&'static str, NodalValues<'a>)> {
-        use NodalValues::{Numbers, Tensors, Vectors};
-        let mut fields = vec![
-            ("displacement", Vectors(self.displacement)),
-            ("velocity", Vectors(self.velocity)),
-            ("stress", Tensors(self.stress)),
-            ("von_mises", Numbers(self.von_mises)),
-            ("equivalent_plastic_strain", Numbers(self.equivalent_plastic_strain)),
-            ("yield_function", Numbers(self.yield_function)),
-        ];
-        fields.extend(self.tensors.iter().map(|(name, values)| (*name, Tensors(values))));
-        fields
-    }
-
     /// Returns the integers per element by name.
     pub fn element_fields(&self) -> [(&'static str, &'a [u32]); 2] {
         [("material", &self.mesh.materials), ("element_id", &self.mesh.element_ids)]

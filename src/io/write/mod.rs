@@ -12,6 +12,7 @@ mod choice;
 pub mod csv;
 pub mod depth_map;
 pub mod error;
+mod fields;
 mod frame;
 mod gmsh;
 pub mod hdf5;
@@ -19,6 +20,7 @@ mod mesh_file;
 pub mod pvd;
 #[cfg(test)]
 pub(crate) mod sample;
+mod solid_fields;
 pub mod stl;
 pub mod tecplot;
 mod vtk;
@@ -31,15 +33,15 @@ pub mod vtp;
 pub mod vtu;
 pub mod writer;
 
-pub use body_fields::{
-    BODY_FIELDS, BodyField, MADE_FIELDS, STONE_BODY, STONE_CENTRE, Written, body_field, body_fields,
-};
-pub use choice::{Choice, SOLID_EXTRA, SOLID_FIELDS};
+pub use body_fields::{BODY_FIELDS, MADE_FIELDS, STONE_BODY, STONE_CENTRE, body_field};
+pub use choice::Choice;
 pub use error::WriteError;
+pub use fields::{FrameField, Needs, Written};
 pub use frame::{
     ChainFrame, Frame, GrainFrame, NO_BODY, NodalValues, SolidFrame, Values, WallFrame, WallKind,
 };
 pub use mesh_file::{MeshOptions, write_mesh_file};
+pub use solid_fields::{SOLID_FIELDS, SOLID_PARTS, solid_label};
 pub use writer::{Format, Mark, Part, Writers};
 
 /// Frame formats, in order of writing.

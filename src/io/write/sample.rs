@@ -1,5 +1,6 @@
-use super::body_fields::{BODY_FIELDS, Written};
-use super::frame::{GrainFrame, Values};
+use super::body_fields::BODY_FIELDS;
+use super::frame::{GrainFrame, NodalValues, SolidFrame, Values};
+use super::solid_fields::SOLID_FIELDS;
 pub use crate::scratch::folder;
 use std::collections::BTreeMap;
 use trackbed_fem::ElementKind;
@@ -16,9 +17,35 @@ pub fn grains(count: usize, vector: impl Fn(usize) -> [f64; 3]) -> GrainFrame {
         "coordination" => Values::Counts(vec![6; count]),
         _ => Values::Vectors(vectors()),
     };
-    let written = BODY_FIELDS.iter().filter(|field| field.written != Written::OnRequest);
+    let written = BODY_FIELDS.iter().filter(|field| field.written.needs().is_none());
     let fields = written.map(|field| (field.name, values(field.name))).collect();
     GrainFrame { position: vectors(), fields }
+}
+
+/// Solid with these values in the default fields of each kind.
+pub fn solid<'a>(
+    mesh: &'a Mesh,
+    vector: &'a [f64],
+    stress: &'a [[f64; 6]],
+    scalar: &'a [f64],
+) -> SolidFrame<'a> {
+    let values = |name: &str| match name {
+        "displacement" | "velocity" => NodalValues::Vectors(vector.into()),
+        "stress" => NodalValues::Tensors(stress.into()),
+        _ => NodalValues::Numbers(scalar.into()),
+    };
+    let written = SOLID_FIELDS.iter().filter(|field| field.written.needs().is_none());
+    SolidFrame { mesh, fields: written.map(|field| (field.name, values(field.name))).collect() }
+}
+
+/// The frame with another field of this name.
+pub fn with<'a>(frame: &SolidFrame<'a>, name: &'static str, values: NodalValues<'a>) -> SolidFrame<'a> {
+    let mut frame = frame.clone();
+    match frame.fields.iter_mut().find(|field| field.0 == name) {
+        Some(field) => field.1 = values,
+        None => frame.fields.push((name, values)),
+    }
+    frame
 }
 
 const LATTICE: [[usize; 3]; 20] = [

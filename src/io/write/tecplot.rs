@@ -92,7 +92,7 @@ pub fn write_solid(
     let n = frame.mesh.node_count();
     check_field(file, "time", &[zone.1], 1, 1)?;
     check_field(file, "coordinates", frame.mesh.coordinates.as_flattened(), 3, n)?;
-    for (name, values) in frame.fields() {
+    for &(name, ref values) in &frame.fields {
         match values {
             NodalValues::Numbers(values) => check_field(file, name, values, 1, n)?,
             NodalValues::Vectors(values) => check_field(file, name, values, 3, n)?,
@@ -124,7 +124,11 @@ fn columns(frame: &SolidFrame, choice: Choice<'_>, centres: &[Centre]) -> Vec<Co
     };
     let place = |axis: usize| column(AXES[axis].into(), &move |node| frame.mesh.coordinates[node][axis]);
     let mut all: Vec<Column> = (0..3).map(place).collect();
-    for (name, values) in frame.fields() {
+    let stress = frame.fields.iter().find_map(|field| match field {
+        ("stress", NodalValues::Tensors(values)) => Some(&values[..]),
+        _ => None,
+    });
+    for &(name, ref values) in &frame.fields {
         if !choice.has(name) {
             continue;
         }
@@ -148,10 +152,10 @@ fn columns(frame: &SolidFrame, choice: Choice<'_>, centres: &[Centre]) -> Vec<Co
             NodalValues::Numbers(values) => {
                 let mut added = column(short.unwrap_or(name).into(), &|i| values[i]);
                 for (value, centre) in added.values[n..].iter_mut().zip(centres) {
-                    match name {
+                    match (name, stress) {
                         // Not linear in the stress.
-                        "von_mises" => *value = von_mises(frame, centre),
-                        "equivalent_plastic_strain" => *value = value.max(0.0),
+                        ("von_mises", Some(stress)) => *value = von_mises(stress, centre),
+                        ("equivalent_plastic_strain", _) => *value = value.max(0.0),
                         _ => {}
                     }
                 }
@@ -165,8 +169,8 @@ fn columns(frame: &SolidFrame, choice: Choice<'_>, centres: &[Centre]) -> Vec<Co
     all
 }
 
-fn von_mises(frame: &SolidFrame, centre: &Centre) -> f64 {
-    let sum = |k: usize| centre.iter().map(|(node, weight)| weight * frame.stress[*node][k]).sum();
+fn von_mises(stress: &[[f64; 6]], centre: &Centre) -> f64 {
+    let sum = |k: usize| centre.iter().map(|(node, weight)| weight * stress[*node][k]).sum();
     stress::von_mises(&std::array::from_fn(sum))
 }
 

@@ -11,23 +11,17 @@ fn written(mesh: &Mesh, choice: Choice<'_>) -> Zone {
     let u: Vec<f64> = mesh.coordinates.iter().flat_map(|[x, y, z]| [y * z, x * x, x + y]).collect();
     let stress: Vec<[f64; 6]> =
         mesh.coordinates.iter().map(|[x, y, z]| [*x, *y, *z, 1.0, 2.0, x * y]).collect();
-    let von_mises: Vec<f64> = stress.iter().map(stress::von_mises).collect();
-    let tensors: Vec<_> = ["strain", "plastic_strain", "other"]
-        .into_iter()
-        .zip(1_u32..)
-        .map(|(name, k)| (name, stress.iter().map(|s| s.map(|v| f64::from(k) * v)).collect::<Vec<_>>()))
-        .collect();
+    let von_mises = stress.iter().map(stress::von_mises).collect();
+    let tensors = ["strain", "plastic_strain", "other"].into_iter().zip(1_u32..).map(|(name, k)| {
+        (name, NodalValues::Tensors(stress.iter().map(|s| s.map(|v| f64::from(k) * v)).collect()))
+    });
     let scalar = vec![0.5; n];
-    let frame = SolidFrame {
-        mesh,
-        displacement: &u,
-        velocity: &u,
-        stress: &stress,
-        von_mises: &von_mises,
-        equivalent_plastic_strain: &scalar,
-        yield_function: &scalar,
-        tensors: &tensors,
-    };
+    let mut frame = sample::with(
+        &sample::solid(mesh, &u, &stress, &scalar),
+        "von_mises",
+        NodalValues::Numbers(von_mises),
+    );
+    frame.fields.extend(tensors);
     let dir = sample::folder(&format!("tecplot_{n}_{}", choice.0.is_some()));
     let file = dir.join("solid.dat");
     write_solid(&file, &frame, choice, ("track \"A\"", 0.25, 1)).unwrap();
@@ -151,16 +145,7 @@ fn rejects_nonfinite_value() {
     let (u, mut stress, scalar) = (vec![0.0; 3 * n], vec![[0.0; 6]; n], vec![0.0; n]);
     let good = stress.clone();
     stress[2][1] = f64::NAN;
-    let frame = SolidFrame {
-        mesh: &mesh,
-        displacement: &u,
-        velocity: &u,
-        stress: &stress,
-        von_mises: &scalar,
-        equivalent_plastic_strain: &scalar,
-        yield_function: &scalar,
-        tensors: &[],
-    };
+    let frame = sample::solid(&mesh, &u, &stress, &scalar);
     let dir = sample::folder("tecplot_nan");
     let write = |frame: &SolidFrame<'_>| {
         let file = dir.join("solid.dat");
@@ -168,7 +153,8 @@ fn rejects_nonfinite_value() {
     };
     let error = write(&frame);
     assert!(error.contains("stress at index 2 is NaN"), "{error}");
-    let error = write(&SolidFrame { stress: &good, tensors: &[("strain", stress.clone())], ..frame });
+    let frame = sample::solid(&mesh, &u, &good, &scalar);
+    let error = write(&sample::with(&frame, "strain", NodalValues::Tensors(stress.into())));
     assert!(error.contains("strain at index 2 is NaN"), "{error}");
     assert_eq!(std::fs::read_dir(&dir).unwrap().count(), 0);
     std::fs::remove_dir_all(&dir).unwrap();

@@ -10,7 +10,7 @@ use std::process::{Command, Output};
 use trackbed_fem::mesh::{Constraint, Mesh};
 
 use super::pvd::Series;
-use super::{ChainFrame, GrainFrame, SolidFrame, Values, WallFrame, sample, vtp, vtu};
+use super::{ChainFrame, GrainFrame, Values, WallFrame, sample, vtp, vtu};
 use crate::mesh_tools;
 use crate::read::MeshFile;
 
@@ -51,16 +51,7 @@ fn write_solid(file: &Path, mesh: &Mesh) {
     let stress: Vec<[f64; 6]> =
         mesh.coordinates.iter().map(|[x, y, z]| [*x, *y, *z, 1.0, 2.0, 3.0]).collect();
     let scalar: Vec<f64> = (0..n).map(|i| i as f64).collect();
-    let frame = SolidFrame {
-        mesh,
-        displacement: &vector,
-        velocity: &vector,
-        stress: &stress,
-        von_mises: &scalar,
-        equivalent_plastic_strain: &scalar,
-        yield_function: &scalar,
-        tensors: &[],
-    };
+    let frame = sample::solid(mesh, &vector, &stress, &scalar);
     vtu::write_solid(file, &frame, Choice::default()).unwrap();
 }
 

@@ -1,6 +1,6 @@
 use super::super::choice::Choice;
 use super::*;
-use crate::write::{SolidFrame, sample, vtu};
+use crate::write::{sample, vtu};
 use std::time::Instant;
 
 #[test]
@@ -45,16 +45,7 @@ fn time_of_field_and_frame() {
     let vector: Vec<f64> = (0..3 * n).map(noise).collect();
     let stress: Vec<[f64; 6]> = (0..n).map(|i| [0, 1, 2, 3, 4, 5].map(|c| noise(6 * i + c))).collect();
     let scalar: Vec<f64> = (0..n).map(noise).collect();
-    let frame = SolidFrame {
-        mesh: &mesh,
-        displacement: &vector,
-        velocity: &vector,
-        stress: &stress,
-        von_mises: &scalar,
-        equivalent_plastic_strain: &scalar,
-        yield_function: &scalar,
-        tensors: &[],
-    };
+    let frame = sample::solid(&mesh, &vector, &stress, &scalar);
     let file = dir.join("solid.vtu");
     let whole = fastest(&|| vtu::write_solid(&file, &frame, Choice::default()).unwrap());
     let size = std::fs::metadata(&file).unwrap().len();

@@ -86,6 +86,16 @@ fn ids<'a>(name: &'static str, values: &'a [u32]) -> Field<'a> {
     Field { name, values: Values::Ids(values) }
 }
 
+fn nodal<'a>((name, values): &'a (&'static str, NodalValues<'_>)) -> Field<'a> {
+    match values {
+        NodalValues::Numbers(values) => doubles(name, 1, values),
+        NodalValues::Vectors(values) => doubles(name, 3, values),
+        NodalValues::Tensors(values) => {
+            Field { name, values: Values::Doubles(9, Cow::Owned(matrices(values))) }
+        }
+    }
+}
+
 fn chosen<'a>(fields: impl IntoIterator<Item = Field<'a>>, choice: Choice<'_>) -> Vec<Field<'a>> {
     fields.into_iter().filter(|field| choice.has(field.name)).collect()
 }
@@ -216,14 +226,7 @@ impl Series {
 
     fn solid(&mut self, time: f64, frame: &SolidFrame<'_>, choice: Choice<'_>) -> Result<(), WriteError> {
         let mesh = frame.mesh;
-        let field = |(name, values)| match values {
-            NodalValues::Numbers(values) => doubles(name, 1, values),
-            NodalValues::Vectors(values) => doubles(name, 3, values),
-            NodalValues::Tensors(values) => {
-                Field { name, values: Values::Doubles(9, Cow::Owned(matrices(values))) }
-            }
-        };
-        let fields: Vec<Field<'_>> = frame.fields().into_iter().map(field).collect();
+        let fields: Vec<Field<'_>> = frame.fields.iter().map(nodal).collect();
         let nodes = mesh.node_count();
         check_field(&self.path, "time", &[time], 1, 1)?;
         check_field(&self.path, "points", mesh.coordinates.as_flattened(), 3, nodes)?;

@@ -20,7 +20,7 @@ use super::vtk::{self, Array, Fields, Section};
 /// Wrong field length, non-finite values; I/O errors.
 pub fn write_solid(file: &Path, frame: &SolidFrame, choice: Choice<'_>) -> Result<(), WriteError> {
     let mut fields = Fields::of_points(file, frame.mesh.node_count()).only(choice);
-    for (name, values) in frame.fields() {
+    for (name, values) in &frame.fields {
         match values {
             NodalValues::Numbers(values) => fields.scalar(name, values)?,
             NodalValues::Vectors(values) => fields.vector(name, values)?,
@@ -143,27 +143,19 @@ mod tests {
         let mesh = sample::block([2, 1, 1]);
         let n = mesh.node_count();
         let (u, stress, scalar) = (vec![0.0; 3 * n], vec![[0.0; 6]; n], vec![0.0; n]);
-        let good = SolidFrame {
-            mesh: &mesh,
-            displacement: &u,
-            velocity: &u,
-            stress: &stress,
-            von_mises: &scalar,
-            equivalent_plastic_strain: &scalar,
-            yield_function: &scalar,
-            tensors: &[],
+        let good = sample::solid(&mesh, &u, &stress, &scalar);
+        let with = |name, values| {
+            write_solid(&file, &sample::with(&good, name, values), Choice::default()).unwrap_err()
         };
         let mut bad = stress.clone();
         bad[5][4] = f64::NAN;
-        let error = write_solid(&file, &SolidFrame { stress: &bad, ..good }, Choice::default()).unwrap_err();
+        let error = with("stress", NodalValues::Tensors(bad.into()));
         assert_eq!(error.to_string(), format!("{}: stress at index 5 is NaN: not written", file.display()));
         let mut bad = u.clone();
         bad[3 * 7 + 1] = f64::INFINITY;
-        let error =
-            write_solid(&file, &SolidFrame { velocity: &bad, ..good }, Choice::default()).unwrap_err();
+        let error = with("velocity", NodalValues::Vectors(bad.into()));
         assert!(error.to_string().contains("velocity at index 7 is inf"), "{error}");
-        let error = write_solid(&file, &SolidFrame { von_mises: &scalar[1..], ..good }, Choice::default())
-            .unwrap_err();
+        let error = with("von_mises", NodalValues::Numbers((&scalar[1..]).into()));
         assert!(error.to_string().contains(&format!("von_mises has {} values", n - 1)), "{error}");
         assert!(!file.exists());
         write_solid(&file, &good, Choice::default()).unwrap();

@@ -1,6 +1,6 @@
 use super::*;
 use crate::write::sample::{self, folder};
-use crate::write::{ChainFrame, FORMATS, SolidFrame, WallFrame};
+use crate::write::{ChainFrame, FORMATS, WallFrame};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -8,16 +8,7 @@ fn with_frame(number: usize, act: impl FnOnce(&Frame<'_>)) {
     let mesh = sample::block([1, 1, 1]);
     let n = mesh.node_count();
     let (vector, stress, scalar) = (vec![0.5; 3 * n], vec![[1.0; 6]; n], vec![number as f64; n]);
-    let solid = SolidFrame {
-        mesh: &mesh,
-        displacement: &vector,
-        velocity: &vector,
-        stress: &stress,
-        von_mises: &scalar,
-        equivalent_plastic_strain: &scalar,
-        yield_function: &scalar,
-        tensors: &[],
-    };
+    let solid = sample::solid(&mesh, &vector, &stress, &scalar);
     let grains = sample::grains(1, |_| [0.0; 3]);
     let chains = ChainFrame {
         ends: vec![[[0.0; 3], [1.0; 3]]],
@@ -33,7 +24,7 @@ fn with_frame(number: usize, act: impl FnOnce(&Frame<'_>)) {
     act(&Frame {
         number,
         time: 0.1 * number as f64,
-        solid: Some(solid),
+        solid: Some(&solid),
         grains: Some(&grains),
         chains: Some(&chains),
         walls: Some(&walls),

@@ -1,45 +1,14 @@
 //! Field labels and units, legend numbers.
 
-use trackbed_io::write::body_field;
-
-const SOLID: [(&str, &str); 15] = [
-    ("von_mises", "Von Mises stress"),
-    ("stress_zz", "Vertical stress σzz"),
-    ("stress_1", "Largest principal stress"),
-    ("stress_2", "Middle principal stress"),
-    ("stress_3", "Smallest principal stress"),
-    ("stress_mean", "Mean stress"),
-    ("displacement", "Displacement"),
-    ("displacement_x", "Displacement x"),
-    ("displacement_y", "Displacement y"),
-    ("displacement_z", "Displacement z"),
-    ("velocity", "Speed"),
-    ("equivalent_plastic_strain", "Equivalent plastic strain"),
-    ("yield_function", "Yield function"),
-    ("element:material", "Material of the element"),
-    ("element:yielded", "Yielded"),
-];
+use trackbed_io::write::{body_field, solid_label};
 
 pub fn grains(field: &str) -> (String, &'static str) {
     body_field(field).map_or_else(|| (field.to_string(), ""), |known| (known.label.to_string(), known.unit))
 }
 
 pub fn solid(field: &str) -> (String, &'static str) {
-    let known = SOLID.iter().find(|s| s.0 == field).map(|s| s.1.to_string());
-    let label =
-        known.unwrap_or_else(|| match (field.strip_prefix("stress_"), field.strip_prefix("velocity_")) {
-            (Some(part), _) => format!("Stress σ{part}"),
-            (_, Some(part)) => format!("Velocity {part}"),
-            _ => field.to_string(),
-        });
-    let begins = |starts: &[&str]| starts.iter().any(|s| field.starts_with(s));
-    let unit = match () {
-        () if begins(&["displacement"]) => "m",
-        () if begins(&["velocity"]) => "m/s",
-        () if begins(&["stress", "von_mises", "yield_function"]) => "Pa",
-        () => "",
-    };
-    (label, unit)
+    let (label, unit) = solid_label(field);
+    (label.to_string(), unit)
 }
 
 /// Factor and unit prefix that suit numbers up to `most`.

@@ -5,7 +5,7 @@
 use base64::prelude::{BASE64_STANDARD, Engine};
 use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 use serde_json::{Value, json};
-use trackbed_io::write::{BODY_FIELDS, MADE_FIELDS};
+use trackbed_io::write::{BODY_FIELDS, FrameField, MADE_FIELDS, SOLID_FIELDS, SOLID_PARTS};
 
 /// Modules by import name. The first two are three.js (licence: `web/three.LICENSE.txt`).
 const MODULES: [(&str, &str); 31] = [
@@ -99,12 +99,18 @@ fn about() -> Markup {
     }
 }
 
+fn labels(fields: impl Iterator<Item = &'static FrameField>) -> Value {
+    let label =
+        |field: &FrameField| (field.name.to_string(), json!({ "label": field.label, "unit": field.unit }));
+    Value::Object(fields.map(label).collect())
+}
+
 fn imports() -> Value {
-    let all = BODY_FIELDS.iter().chain(&MADE_FIELDS);
-    let fields: serde_json::Map<String, Value> = all
-        .map(|field| (field.name.to_string(), json!({ "label": field.label, "unit": field.unit })))
-        .collect();
-    let fields = format!("export const FIELDS = {};", Value::from(fields));
+    let fields = format!(
+        "export const FIELDS = {};\nexport const SOLID_FIELDS = {};",
+        labels(BODY_FIELDS.iter().chain(&MADE_FIELDS)),
+        labels(SOLID_FIELDS.iter().chain(&SOLID_PARTS))
+    );
     let address = |text: &str| json!(format!("data:text/javascript;base64,{}", BASE64_STANDARD.encode(text)));
     let modules = MODULES.iter().map(|(name, text)| (name.to_string(), address(text)));
     let addresses: serde_json::Map<String, Value> =

@@ -2,14 +2,14 @@
 
 use super::clock::Clock;
 use super::{Known, StageTime};
+use crate::initial;
 use crate::stages::reduction;
-use crate::{Prediction, initial};
 use nalgebra::DMatrix;
 use std::time::{Duration, Instant};
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_fem::mesh::Face;
 use trackbed_fem::theta::{NonlinearTheta, ThetaMethod, ThetaSolver};
-use trackbed_fem::{Method, Model, SolveError, State};
+use trackbed_fem::{Model, SolveError, State};
 use trackbed_input::model::Job;
 use trackbed_input::model::grains::GrainsPart;
 use trackbed_input::model::solid::{Analysis, SolidPart};
@@ -66,20 +66,17 @@ const LONG: f64 = 2.0;
 const RATE: f64 = 0.75;
 const ORDER: usize = 512;
 
-/// Stiffness products of a static CG solve: about 60 iterations of 12, mostly single precision, and set-up.
-const PRODUCTS: f64 = 560.0;
-
 /// Estimates the static solve of a large solid; none if short or absent.
 pub fn statics(job: &Job, threads: usize) -> Option<Vec<StageTime>> {
     let part = job.solid.as_ref().filter(|s| matches!(s.analysis, Analysis::Static))?;
     if job.grains.is_some() {
         return None;
     }
-    let seconds = match part.equations.methods.statics {
-        Method::Iterative { .. } => PRODUCTS * product(&part.model) / super::cores(threads),
-        Method::Direct => Prediction::of(part).ok()?.flops / (rate() * super::cores(threads)),
-        // MUMPS on one thread.
-        _ => part.model.solver_demand(true).ok()?.flops / rate(),
+    let method = part.equations.methods.statics;
+    let cores = if method.is_serial() { 1.0 } else { super::cores(threads) };
+    let seconds = match method.statics_products() {
+        Some(products) => products * product(&part.model) / cores,
+        None => part.model.solver_demand(true).ok()?.flops / (rate() * cores),
     };
     let stage = StageTime { name: "static".into(), seconds, known: Known::Expected };
     (seconds > LONG).then(|| vec![stage])

@@ -311,7 +311,7 @@ impl<'a> Results<'a> {
             extra: &self.job.output.extra,
             draw,
         });
-        let solid = (system.solid(), self.job.output.tensors.as_slice());
+        let solid = (system.solid(), self.job.output.solid_extra.as_slice());
         frames::write(&mut self.writers, (self.course.frame, time), solid, grains)?;
         self.course.frame += 1;
         Ok(())

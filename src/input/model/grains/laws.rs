@@ -1,7 +1,8 @@
 //! Contact laws of material pairs, and unused constants.
 
 use crate::scene::{Scene, SceneError, Table};
-use trackbed_dem::law::table::{LawInfo, combination};
+use trackbed_dem::law::parameter;
+use trackbed_dem::law::table::{COMBINATIONS, LawInfo, combination};
 use trackbed_dem::material::Pair;
 use trackbed_dem::{Material, PairOverride};
 
@@ -83,7 +84,13 @@ fn check_constants(scene: &Table<Scene>, i: usize, laws: &[&LawInfo]) -> Result<
     if m.tangential_ratio.is_some() && unused("tangential_ratio") {
         return Err(m.conflict("tangential_ratio", "`young`").remedy("Poisson's ratio sets it"));
     }
-    Ok(())
+    // Asperities are judged by their value above, as zero is the default.
+    let named = |key: &str| key != "asperity_friction" && COMBINATIONS.iter().any(|law| law.uses(key));
+    let idle = |key: &&str| named(key) && unused(key) && m.has(key);
+    match parameter::MATERIAL.iter().map(|p| p.key).find(idle) {
+        Some(key) => Err(m.no_effect(key, "a contact law that uses it")),
+        None => Ok(()),
+    }
 }
 
 pub(super) fn stiffens(materials: &[Material], contacts: &[PairOverride]) -> bool {

@@ -52,30 +52,29 @@ pub(super) fn plan(
     nodes: usize,
 ) -> Result<EquationPlan, SceneError> {
     let table = solid.optional("equations", &solid.equations);
-    let chosen = table.as_ref().map_or(Equations::default(), |t| **t);
-    let method = chosen.method;
+    let keys = table.as_ref().map_or(Equations::default(), |t| **t);
+    let tolerance = keys.tolerance.unwrap_or(Method::WINDOW_TOLERANCE);
+    let chosen = match keys.method {
+        EquationMethod::Auto => None,
+        EquationMethod::Direct => Some(Method::Direct),
+        EquationMethod::Iterative => Some(Method::Iterative { tolerance }),
+        EquationMethod::Mumps => {
+            Some(Method::Mumps(MumpsMethod { out_of_core: keys.out_of_core.unwrap_or(false) }))
+        }
+    };
     let hindrance = hindrance(solid, analysis, linear, coupled);
     if let Some(t) = &table {
         check(t)?;
-        let name = match method {
-            EquationMethod::Iterative => Some("iterative"),
-            EquationMethod::Mumps => Some("mumps"),
-            EquationMethod::Auto | EquationMethod::Direct => None,
-        };
-        if let (Some(name), Some(hindrance)) = (name, hindrance) {
-            let found = format!("\"{name}\" with {hindrance}");
+        if let (Some(method), Some(hindrance)) = (chosen.filter(|m| *m != Method::Direct), hindrance) {
+            let found = format!("\"{}\" with {hindrance}", method.name());
             return Err(t.error("method", found, "\"auto\" or \"direct\""));
         }
     }
-    let tolerance = chosen.tolerance.unwrap_or(Method::WINDOW_TOLERANCE);
-    let mumps = MumpsMethod { out_of_core: chosen.out_of_core.unwrap_or(false) };
-    let choose = |used: bool, wins: bool, why: String| match method {
+    let choose = |used: bool, wins: bool, why: String| match chosen {
         _ if !used => (Method::Direct, String::new()),
-        EquationMethod::Direct => (Method::Direct, "set in the scene".into()),
-        EquationMethod::Iterative => (Method::Iterative { tolerance }, "set in the scene".into()),
-        EquationMethod::Mumps => (Method::Mumps(mumps), "set in the scene".into()),
-        EquationMethod::Auto if wins => (Method::Iterative { tolerance }, why),
-        EquationMethod::Auto => (Method::Direct, why),
+        Some(method) => (method, "set in the scene".into()),
+        None if wins => (Method::Iterative { tolerance }, why),
+        None => (Method::Direct, why),
     };
     let possible = hindrance.is_none();
     let statics = possible && (coupled || matches!(analysis, Analysis::Static));

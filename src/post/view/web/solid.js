@@ -1,34 +1,18 @@
 // The solid: its deformed skin with a field.
 import * as THREE from 'three';
 import { limits, mapTexture, rgb } from 'colours';
+import { SOLID_FIELDS } from 'fields';
 import { lineMaterial, surfaceMaterial } from 'shaders';
 
 /** Number of the kind in pictures for picking. */
 export const NODE = 2;
 
-const STRESSES = /^(stress|von_mises|yield_function)/;
-
 /** Parts of the displacement, which the page makes itself. */
 export const DISPLACEMENTS = ['displacement', 'displacement_x', 'displacement_y', 'displacement_z'];
 
-export function label(field) {
-  const names = {
-    von_mises: 'Von Mises stress', stress_zz: 'Vertical stress σzz', stress_1: 'Largest principal stress',
-    stress_2: 'Middle principal stress', stress_3: 'Smallest principal stress', stress_mean: 'Mean stress',
-    displacement: 'Displacement', displacement_x: 'Displacement x', displacement_y: 'Displacement y',
-    displacement_z: 'Displacement z', velocity: 'Speed', equivalent_plastic_strain: 'Equivalent plastic strain',
-    yield_function: 'Yield function', 'element:material': 'Material of the element',
-  };
-  const tensor = /^stress_([xyz]{2})$/.exec(field);
-  const velocity = /^velocity_([xyz])$/.exec(field);
-  return names[field] ?? (tensor ? `Stress σ${tensor[1]}` : velocity ? `Velocity ${velocity[1]}` : field);
-}
-
-export function unit(field) {
-  if (field.startsWith('displacement')) return 'm';
-  if (field.startsWith('velocity')) return 'm/s';
-  return STRESSES.test(field) ? 'Pa' : '';
-}
+export const label = (field) => SOLID_FIELDS[field]?.label ?? field;
+/** Unit, also of parts such as `strain_xx`. */
+export const unit = (field) => (SOLID_FIELDS[field] ?? SOLID_FIELDS[field.replace(/_[^_]*$/, '')])?.unit ?? '';
 
 export class Solid {
   constructor() {
