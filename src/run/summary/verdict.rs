@@ -54,6 +54,9 @@ pub struct Verdict {
     pub outcome: Outcome,
     /// Balance checks.
     pub checks: Vec<Judged>,
+    /// Whether the run stopped with a failure.
+    #[serde(skip)]
+    stopped: bool,
 }
 
 impl Verdict {
@@ -88,19 +91,23 @@ impl Verdict {
         }
         let balances = checks.iter().map(|j| j.outcome).max().unwrap_or_default();
         let outcome = balances.max(validity::worst(&summary.validity));
-        Verdict { outcome, checks }
+        Verdict { outcome, checks, stopped: false }
     }
 
     /// Marks the run as failed.
     pub fn fail(&mut self) {
         self.outcome = Outcome::Failed;
+        self.stopped = true;
     }
 
     /// Formats report lines.
     pub fn report(&self) -> Vec<String> {
         let count = self.checks.len();
         let noun = if count == 1 { "balance" } else { "balances" };
-        let mut lines = vec![format!("checks: {}, {count} {noun}", self.outcome.word())];
+        // Without the validity, which has its own line.
+        let worst = self.checks.iter().map(|j| j.outcome).max().unwrap_or_default();
+        let balances = if self.stopped { Outcome::Failed } else { worst };
+        let mut lines = vec![format!("checks: {}, {count} {noun}", balances.word())];
         for j in self.checks.iter().filter(|j| j.outcome != Outcome::Passed) {
             lines.push(format!(
                 "  {}: {}: {:.3e} (limit {:.0e})",
