@@ -94,6 +94,7 @@ fn scenes(dir: &Path) -> Vec<PathBuf> {
     found
 }
 
+/// Shipped scenes that run: files with a title that are no studies.
 pub fn inputs() -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut folders = vec![repository().join("inputs")];
@@ -104,8 +105,8 @@ pub fn inputs() -> Vec<PathBuf> {
                 folders.push(path);
             } else if path.extension().is_some_and(|e| e == "toml") {
                 let text = fs::read_to_string(&path).unwrap();
-                let is_scene =
-                    text.lines().any(|l| ["[solid]", "[[grains]]"].iter().any(|head| l.starts_with(head)));
+                let has = |key: &str| text.lines().any(|line| line.starts_with(key));
+                let is_scene = has("title =") && !has("scene =");
                 // A free body has modes, but no run.
                 let runs = is_scene && !text.contains("trackbed modal");
                 found.extend(runs.then_some(path));

@@ -1,5 +1,6 @@
 //! Plausibility warnings name the key; shipped scenes have none.
 
+use super::cli::inputs;
 use super::support::{Folder, repository, trackbed};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -246,33 +247,13 @@ fn solid_load_near_mode_is_found() {
     }
 }
 
-fn scenes(folder: &Path, out: &mut Vec<std::path::PathBuf>) {
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            scenes(&path, out);
-        } else if path.extension().is_some_and(|e| e == "toml") {
-            let text = std::fs::read_to_string(&path).unwrap();
-            // Skips studies, stone libraries and included parts.
-            if text.lines().any(|line| line.starts_with("title =")) && !text.contains("\nscene =") {
-                out.push(path);
-            }
-        }
-    }
-}
-
 #[test]
 fn no_shipped_scene_is_blamed() {
-    let mut all = Vec::new();
-    scenes(&repository().join("inputs"), &mut all);
+    let all = inputs();
     assert!(all.len() > 35, "{}", all.len());
     let mut blamed = Vec::new();
     for scene in &all {
         let name = scene.strip_prefix(repository()).unwrap().display().to_string();
-        // Unconstrained, for `modal` only.
-        if name.ends_with("verify/free_beam.toml") {
-            continue;
-        }
         blamed.extend(found(&name, &[]).iter().map(|f| format!("{name}: {f}")));
     }
     assert!(blamed.is_empty(), "{}", blamed.join("\n"));
