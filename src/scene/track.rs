@@ -252,13 +252,13 @@ pub struct RailTable {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename = "Irregularity", deny_unknown_fields)]
 pub struct IrregularityTable {
-    /// CSV file `position, height` [m] from the first sleeper, header optional; level beyond its ends.
+    /// CSV file `position, height` [m] from the first sleeper, level beyond; default none.
     #[schemars(extend("format" = "path"))]
     pub file: Option<PathBuf>,
-    /// Waves a sin 2πx/L as `[[L, a], …]` [m]; > 0 (L).
+    /// Waves a sin 2πx/L as `[[L, a], …]` [m]; default none; > 0 (L).
     #[serde(default)]
     pub waves: Vec<[Quantity<Length>; 2]>,
-    /// Dipped joints.
+    /// Dipped joints; default none.
     #[serde(default)]
     pub dips: Vec<DipRow>,
 }
