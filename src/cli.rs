@@ -75,6 +75,8 @@ pub enum Command {
     },
     /// Run variants of a scene: sensitivity to parameters, calibration, errors and costs.
     Study(StudyArgs),
+    /// Test soil models at one stress point: triaxial, undrained, oedometer, simple shear, any path.
+    Element(ElementArgs),
     /// Write an HTML report of one run or study, or a comparison of several runs.
     Report(ReportArgs),
     /// Run the scene of a finished run again and compare the results, file by file.
@@ -250,6 +252,25 @@ pub struct StudyArgs {
     /// Print errors only.
     #[arg(long)]
     pub quiet: bool,
+}
+
+/// Arguments of `element`.
+#[derive(Debug, Args)]
+pub struct ElementArgs {
+    /// File of materials and tests (TOML).
+    pub file: PathBuf,
+    /// Results directory [default: results/NAME of the file].
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Set one key of the file, as key.path=value; repeatable.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Overwrite existing results.
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// Arguments of `report`.

@@ -3,6 +3,7 @@
 pub mod check;
 mod convert;
 mod demo;
+mod element;
 pub mod explain;
 mod manual;
 mod mesh;
@@ -54,6 +55,7 @@ pub fn execute(command: Command) -> Result<(), Failure> {
         Command::Manual { folder } => manual::manual(&folder),
         Command::Demo(args) => demo::demo(args, run_scene, view::view),
         Command::Study(args) => study::study(args),
+        Command::Element(args) => element::element(args),
         Command::Report(args) => report::report(args),
         Command::Reproduce(args) => reproduce::reproduce(args, run_scene),
         Command::Modal(args) => {

@@ -9,6 +9,7 @@
 pub mod allocator;
 pub mod cli;
 pub mod commands;
+pub mod element;
 pub mod program;
 pub mod start;
 pub mod study;

@@ -15,6 +15,7 @@ mod suite {
     mod curves;
     mod determinism;
     mod device;
+    mod element;
     mod examples;
     mod exchange;
     mod extremes;

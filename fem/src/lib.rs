@@ -36,6 +36,7 @@ pub mod boundary;
 pub mod connectivity;
 pub mod damping;
 pub mod element;
+pub mod element_test;
 pub mod energy;
 pub mod equations;
 pub mod error;

@@ -125,7 +125,7 @@ pub struct Table {
 }
 
 /// Tables that runs write.
-pub const TABLES: [&Table; 15] = [
+pub const TABLES: [&Table; 16] = [
     history::TABLE,
     cycles::TABLE,
     push::TABLE,
@@ -141,6 +141,7 @@ pub const TABLES: [&Table; 15] = [
     gauss::TABLE,
     safety::TABLE,
     modes::TABLE,
+    element::TABLE,
 ];
 
 /// Lists the columns of all tables: file, name, unit and meaning.
@@ -436,6 +437,23 @@ pub mod modes {
         EFFECTIVE_MASS_X: Scalar "effective_mass_x" "kg" "effective modal mass";
         EFFECTIVE_MASS_Y: Scalar "effective_mass_y" "kg" "effective modal mass";
         EFFECTIVE_MASS_Z: Scalar "effective_mass_z" "kg" "effective modal mass";
+    }
+}
+
+/// Columns of `trackbed element`, one table per test and material; compression positive.
+pub mod element {
+    columns! { "element tests";
+        STEP: Scalar "step" "" "step, 0 at the start";
+        AXIAL_STRAIN: Scalar "axial_strain" "" "strain zz";
+        VOLUMETRIC_STRAIN: Scalar "volumetric_strain" "" "sum of the normal strains";
+        DEVIATORIC_STRAIN: Scalar "deviatoric_strain" "" "square root of 2/3 e : e";
+        P: Scalar "p" "Pa" "mean effective stress";
+        Q: Scalar "q" "Pa" "square root of 3 J2; negative in axial extension";
+        STRESS: Tensor "stress" "Pa" "effective stress";
+        STRAIN: Tensor "strain" "" "strain, engineering shear";
+        EQUIVALENT_PLASTIC_STRAIN: Scalar "equivalent_plastic_strain" "" "accumulated square root of 2/3 de_p : de_p";
+        PLASTIC_WORK: Scalar "plastic_work" "J/m3" "dissipated energy density: plastic work since the start";
+        PORE_PRESSURE: Scalar "pore_pressure" "Pa" "excess pore pressure of an undrained test, else 0";
     }
 }
 

@@ -31,6 +31,7 @@ mod table;
 mod target;
 mod text;
 
+pub use label::file_names;
 pub use page::{is_study, write as report};
 pub use score::scored;
 

@@ -76,6 +76,11 @@ pub trait ConstitutiveLaw {
     /// Whether plastic flow is associated, so that plastic work is never negative.
     fn is_associated(&self) -> bool;
 
+    /// Whether the response is the same in all directions, so that it rotates with stress and strain.
+    fn is_isotropic(&self) -> bool {
+        true
+    }
+
     /// Whether the tangent is always symmetric.
     fn has_symmetric_tangent(&self) -> bool;
 

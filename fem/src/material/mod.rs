@@ -167,6 +167,11 @@ pub fn yield_function(material: &Material, state: &PointState) -> f64 {
     material.law.yield_function(state.into())
 }
 
+/// Principal values of a symmetric tensor, descending; tensor shear.
+pub fn principal_values(tensor: &[f64; 6]) -> [f64; 3] {
+    spectral::principal(tensor).values
+}
+
 /// Sets `tangent` to `(1 - fraction) tangent + fraction D` [Pa].
 pub fn regularise(tangent: &mut [[f64; 6]; 6], elastic: &Elastic, fraction: f64) {
     let matrix = elastic.matrix();
