@@ -1191,13 +1191,13 @@ class Inlet(TypedDict, total=False):
 class Irregularity(TypedDict, total=False):
     """`[track.rail.irregularity]`: height of the running surface, the sum of all that is given."""
 
-    # Dipped joints.
+    # Dipped joints; default none.
     dips: Sequence[Dip]
 
-    # CSV file `position, height` [m] from the first sleeper, header optional; level beyond its ends.
+    # CSV file `position, height` [m] from the first sleeper, level beyond; default none.
     file: File
 
-    # Waves a sin 2πx/L as `[[L, a], …]` [m]; > 0 (L).
+    # Waves a sin 2πx/L as `[[L, a], …]` [m]; default none; > 0 (L).
     waves: Rows
 
 
