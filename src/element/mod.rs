@@ -117,7 +117,7 @@ fn outcome(test: &Test, Named { name, material }: &Named, file: &str) -> Result<
         material: name.clone(),
         kind: test.kind,
         file: file.into(),
-        figures: Figures::of(test.kind, &states),
+        figures: Figures::of(test.kind, &states, test.segments[0].steps),
         states,
         checks,
     })

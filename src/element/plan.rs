@@ -234,7 +234,7 @@ fn path(table: &Table<TestTable>) -> Result<Vec<Segment>, SceneError> {
         ("least", table.least.is_some()),
         ("cycles", table.cycles.is_some()),
     ];
-    table.reject_without(others, "another `kind` than `\"path\"`")?;
+    table.reject_with(others, "`kind = \"path\"`")?;
     let controls = table.need("controls", table.controls, "\"strain\" or \"stress\" of six components")?;
     let points = table.need("points", table.points.as_deref(), "a list of six values for each segment")?;
     if points.is_empty() {

@@ -119,7 +119,7 @@ pub struct Figures {
     pub friction_end: Option<f64>,
     /// Stiffness of the first step [Pa].
     pub stiffness_start: Option<f64>,
-    /// Secant stiffness at half of the largest stress change [Pa].
+    /// Secant stiffness at half of the largest stress change of the first loading [Pa].
     pub stiffness_50: Option<f64>,
     /// Dilation angle of the plastic strain increment at the peak.
     pub dilation: Option<f64>,
@@ -130,8 +130,8 @@ pub struct Figures {
 }
 
 impl Figures {
-    /// Figures of a test.
-    pub fn of(kind: Kind, states: &[State]) -> Figures {
+    /// Figures of a test; `first`: steps of the first loading.
+    pub fn of(kind: Kind, states: &[State], first: usize) -> Figures {
         let most = states.iter().map(|s| s.q.abs()).fold(0.0, f64::max);
         let peak = states.iter().position(|s| s.q.abs() >= most * (1.0 - PEAK)).unwrap_or(0);
         let end = &states[states.len() - 1];
@@ -141,7 +141,7 @@ impl Figures {
             friction_peak: states[peak].friction(),
             friction_end: end.friction(),
             stiffness_start: stiffness_start(kind, states),
-            stiffness_50: stiffness_50(kind, states),
+            stiffness_50: stiffness_50(kind, &states[..=first]),
             dilation: dilation(kind, states, peak),
             pore_pressure: (kind == Kind::Undrained).then_some(end.pore_pressure),
             stress_ratio_end: (end.p() > 0.0).then(|| end.q / end.p()),

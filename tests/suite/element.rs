@@ -103,6 +103,18 @@ points = [["100 kPa", 1e5, 0.001, 0, 0, 0], ["110 kPa", "110 kPa", 0.001, 0, 0, 
     near(at("stress_zx", 20), 80e6 / 2.6 * 2e-4, 1e-9);
 }
 
+/// Extension first, then the larger q of compression.
+#[test]
+fn secant_stiffness_is_of_first_loading() {
+    let folder = Folder::new("element_cycle");
+    let cycle = "strain = -0.01\nleast = 0.01\ncycles = 1\n";
+    let file = folder.write("a.toml", &FILE.replace("strain = 0.02\n", cycle));
+    element(&file, &folder.join("out"), &[]).good();
+    let figures = &json(&folder.join("out/summary.json"))["tests"][0]["figures"];
+    near(figures["stiffness_50"].as_f64().unwrap(), 80e6, 1e-9);
+    near(figures["peak_q"].as_f64().unwrap(), strength(25e3, 28.0), 1e-8);
+}
+
 #[test]
 fn scene_gives_materials() {
     let folder = Folder::new("element_scene");
@@ -145,6 +157,11 @@ fn rejects_bad_input_with_whole_messages() {
             "strain = 0.02",
             "strain = 0.02\nsteps = 0",
             "a.toml:15: test.0.steps: found 0, expected 1 to 100000 (at most 100000 steps of a test)",
+        ),
+        (
+            "kind = \"triaxial\"",
+            "kind = \"path\"",
+            "a.toml:14: test.0.strain: found together with `kind = \"path\"`, expected only one of them",
         ),
         (
             "young = \"80 MPa\"\n",
