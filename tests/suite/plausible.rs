@@ -3,7 +3,6 @@
 use super::cli::inputs;
 use super::support::{Folder, repository, trackbed};
 use std::collections::BTreeSet;
-use std::path::Path;
 use trackbed::model::Job;
 use trackbed::plausible::{Finding, near_mode, weigh};
 use trackbed::scene::Document;
