@@ -191,16 +191,17 @@ pub struct ContactLoss {
 }
 
 impl TrackRecord {
-    /// Warnings about loss of contact.
+    /// Warnings about loss of contact of sleepers and axles, and about contact forces of axles.
     pub fn warnings(&self) -> impl Iterator<Item = String> + '_ {
-        self.sleepers.iter().enumerate().filter_map(|(k, s)| {
+        let sleepers = self.sleepers.iter().enumerate().filter_map(|(k, s)| {
             let ContactLoss { first, seconds, rise } = s.lifted_off?;
             Some(format!(
                 "sleeper {}: without contact for {seconds:.6} s in total, first at t = {first:.6} s; largest uplift {:.3} mm since the first cycle",
                 k + 1,
                 1e3 * rise
             ))
-        })
+        });
+        sleepers.chain(self.vehicles.iter().flat_map(RollingRecord::warnings))
     }
 }
 

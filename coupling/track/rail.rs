@@ -480,4 +480,4 @@ impl RailState {
 
 #[cfg(test)]
 #[path = "rail_tests.rs"]
-mod tests;
+pub(super) mod tests;

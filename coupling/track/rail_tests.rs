@@ -3,7 +3,7 @@ use crate::influence::Winkler;
 use std::f64::consts::PI;
 
 /// 60 kg rail on pads and a bed, one sleeper modelled among 40.
-fn input() -> RailInput {
+pub fn input() -> RailInput {
     RailInput {
         elements: 4,
         spacing: 0.6,

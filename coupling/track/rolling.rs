@@ -58,6 +58,8 @@ pub struct RollingState {
     statistics: Vec<Statistics>,
     /// Of the acceleration of bodies.
     body: Statistics,
+    /// Steps whose contact forces did not converge.
+    unconverged: u64,
 }
 
 /// Statistics over time.
@@ -111,6 +113,21 @@ pub struct RollingRecord {
     pub body_acceleration: f64,
     /// Its root mean square [m/s²].
     pub body_acceleration_rms: f64,
+    /// Steps whose contact forces did not converge.
+    pub unconverged_steps: u64,
+}
+
+impl RollingRecord {
+    /// Warnings about loss of contact and forces that did not converge.
+    pub fn warnings(&self) -> impl Iterator<Item = String> + '_ {
+        let lost = self.axles.iter().enumerate().filter(|(_, axle)| axle.without_contact > 0.0);
+        let lost = lost.map(|(k, axle)| {
+            format!("axle {}: without contact for {:.6} s in total", k + 1, axle.without_contact)
+        });
+        let steps = self.unconverged_steps;
+        let forces = format!("vehicles: contact forces not converged to 1e-12 in {steps} steps");
+        lost.chain((steps > 0).then_some(forces))
+    }
 }
 
 /// Force of an axle on the track, both rails together.
@@ -148,6 +165,7 @@ impl Rolling {
             forces: vec![self.force; axles * self.rails],
             statistics: vec![Statistics::default(); axles],
             body: Statistics::default(),
+            unconverged: 0,
         }
     }
 
@@ -192,8 +210,8 @@ impl Rolling {
         Some(())
     }
 
-    /// Forces by nonlinear Gauss–Seidel sweeps: the problem is convex.
-    fn solve(&self, forces: &mut [f64]) {
+    /// Forces by nonlinear Gauss–Seidel sweeps: the problem is convex. Returns whether they converged.
+    fn solve(&self, forces: &mut [f64]) -> bool {
         let (n, rails) = (self.places.len(), self.rails);
         // Wheels per axle on a modelled rail.
         let wheels = 2.0 * self.input.share / rails as f64;
@@ -222,9 +240,10 @@ impl Rolling {
                 }
             }
             if change <= TOLERANCE * self.force {
-                break;
+                return forces.iter().all(|f| f.is_finite());
             }
         }
+        false
     }
 
     /// Advances the vehicles to `time` with the rails between the parts of their step, and sets `wheels` to
@@ -244,7 +263,7 @@ impl Rolling {
             state.pass = None;
             return;
         }
-        self.solve(&mut state.forces);
+        state.unconverged += u64::from(!self.solve(&mut state.forces));
         let on_axle = |i: usize, forces: &[f64]| {
             forces[i * self.rails..(i + 1) * self.rails].iter().sum::<f64>() / self.input.share
         };
@@ -295,6 +314,7 @@ impl Rolling {
             axles: state.statistics.iter().map(axle).collect(),
             body_acceleration: state.body.range[1].max(-state.body.range[0]),
             body_acceleration_rms: (state.body.squares / state.body.duration).sqrt(),
+            unconverged_steps: state.unconverged,
         })
     }
 }
@@ -311,7 +331,7 @@ fn pressed(free: f64, soft: f64, wheels: f64, hertz: f64) -> f64 {
         let slope = 1.0 + 1.5 * soft * force(approach) / approach;
         let step = (approach + soft * force(approach) - free) / slope;
         approach -= step;
-        if step <= 1e-16 * free {
+        if step <= 1e-15 * free {
             break;
         }
     }

@@ -77,18 +77,7 @@ impl Line {
 
 /// Track on 40 + 40 sleepers.
 fn track() -> RailInput {
-    RailInput {
-        elements: 4,
-        spacing: 0.6,
-        bending: 6.4e6,
-        mass: 60.0,
-        pad: [120e6, 40e3],
-        gravity: 0.0,
-        sleepers: 1,
-        beyond: 40,
-        sleeper_mass: 160.0,
-        foundation: [40e6, 60e3],
-    }
+    RailInput { beyond: 40, ..crate::rail::tests::input() }
 }
 
 fn rigid() -> RailInput {
@@ -184,6 +173,11 @@ fn contact_law_holds_at_the_end_of_a_step() {
             let e = line.states[0].energy();
             assert!(e.error().abs() < 1e-9 * e.elastic.max(10.0), "{}: {e:?}", line.time);
         }
+        assert_eq!(line.state.unconverged, 0);
+        let record = line.rolling.record(&line.state);
+        let warned =
+            record.is_some_and(|r| r.warnings().any(|w| w.starts_with("axle 1: without contact for ")));
+        assert_eq!(warned, apart > 0, "{apart}");
         println!("joint dipped by 24 mrad at 216 km/h: {largest:.2} of the static load, {apart} steps apart");
         assert!(largest > 1.5, "{largest}");
     }

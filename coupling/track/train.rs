@@ -66,7 +66,8 @@ mod tests {
     fn universal_train_is_symmetric() {
         let axles = universal(18, 18.0, 2.0);
         let length = axles[axles.len() - 1];
-        assert_eq!((axles.len(), length), (50, 2.0 * 20.525 + 20.0 * 18.0 + 2.0));
+        assert_eq!(axles.len(), 50);
+        assert!((length - 403.05).abs() < 1e-9, "{length}");
         for (a, b) in axles.iter().zip(axles.iter().rev()) {
             assert!((a + b - length).abs() < 1e-9, "{a} {b}");
         }

@@ -136,6 +136,25 @@ fn a_vehicle_on_a_beam() {
     assert!((1.5..4.0).contains(&ratio), "{ratio}");
 }
 
+/// A changed profile of the rail is another model, for `--resume` and `reproduce`.
+#[test]
+fn profile_of_the_rail_belongs_to_the_model() {
+    let (folder, file) =
+        written(&springs(3, &(vehicle("200 km/h") + BEAM + "irregularity = { file = \"profile.csv\" }\n")));
+    let hash = |rows: &str| {
+        folder.write("profile.csv", rows);
+        let document = trackbed::scene::Document::open(&file).unwrap();
+        let scene = trackbed::model::read_scene(&document).unwrap();
+        trackbed::run::scene_hash(&document, &scene)
+    };
+    let first = hash("position [m], height [mm]\n0, 0\n0.6, -1\n1.2, 0\n");
+    assert_ne!(hash("position [m], height [mm]\n0, 0\n0.6, -2\n1.2, 0\n"), first);
+    folder.write("profile.csv", "position [m], height [mm]\n0, 0\n0.6, -2\n0.5, 0\n");
+    let outcome = trackbed([std::path::Path::new("check"), &file]);
+    let line = "profile.csv:4: position: found 0.5, expected a position after 0.6 m";
+    assert!(outcome.code == 2 && outcome.stderr.contains(line), "{}", outcome.stderr);
+}
+
 #[test]
 fn broken_vehicles_are_refused() {
     let rail = "irregularity = { waves = [[1.0, 0.001]], dips = [{ at = 0, depth = 0.001, length = 1 }] }\n";
