@@ -246,16 +246,18 @@ impl Rail {
         pad * foundation / (pad + foundation)
     }
 
-    /// Static height of an endless rail on the foundation under equal wheels `behind` [m] each other, with its
-    /// weight [m]. Shape of the result: `[wheels]`.
+    /// Static height of an endless rail on the foundation under its weight [m].
+    pub fn own_height(&self) -> f64 {
+        -self.input.mass * self.input.gravity * self.input.spacing / self.series()
+    }
+
+    /// Static heights of an endless rail on the foundation under equal wheels `behind` [m] each other, without its
+    /// weight [m]. Shape `[wheels]`.
     pub fn standing(&self, behind: &[f64], force: f64) -> Vec<f64> {
         let series = self.series();
         let line = Winkler::new(self.input.bending, series, self.input.spacing);
-        let weight = self.input.mass * self.input.gravity * self.input.spacing;
-        let height = |at: &f64| {
-            let wheels: f64 = behind.iter().map(|other| force * line.share(at - other)).sum();
-            -(wheels + weight) / series
-        };
+        let height =
+            |at: &f64| -behind.iter().map(|other| force * line.share(at - other)).sum::<f64>() / series;
         behind.iter().map(height).collect()
     }
 

@@ -13,6 +13,8 @@ use serde::{Deserialize, Serialize};
 /// Change of forces over the static one that ends the iteration.
 const TOLERANCE: f64 = 1e-12;
 const MOST_SWEEPS: usize = 200;
+/// Damping ratio of a wheelset on the even track: it does not ring on after leaving the rail.
+const EVEN_DAMPING: f64 = 0.1;
 
 /// Vehicles and the surface on which they roll.
 #[derive(Clone, Debug)]
@@ -36,8 +38,10 @@ pub struct Rolling {
     rails: usize,
     /// Static force of an axle on one rail [N].
     force: f64,
-    /// Static height of the rail at each axle [m].
+    /// Static height of the rail at each axle, without its weight [m].
     standing: Vec<f64>,
+    /// Damping between a wheelset and the even track beyond the rail [N s/m].
+    even_damping: f64,
     /// Position, share on the rail. Shape `[axles]`.
     places: Vec<[f64; 2]>,
     /// Shape `[axles × axles]`.
@@ -152,8 +156,10 @@ impl Rolling {
         let force = input.share * vehicle.axle_load() / rails as f64;
         let behind: Vec<f64> = load.axles().iter().map(|a| a[0]).collect();
         let standing = rail.standing(&behind, force);
+        let stiffness = 1.5 * vehicle.axle_load() / at_rest(input.hertz, &vehicle);
+        let even_damping = EVEN_DAMPING * 2.0 * (stiffness * input.vehicle.wheelset).sqrt();
         let (places, compliance, approach) = Default::default();
-        Some(Rolling { input, vehicle, rails, force, standing, places, compliance, approach })
+        Some(Rolling { input, vehicle, rails, force, standing, even_damping, places, compliance, approach })
     }
 
     /// Standing vehicles, before the first pass.
@@ -187,7 +193,7 @@ impl Rolling {
         self.places.clear();
         self.places.extend(load.axle_places(time));
         let Rolling { vehicle, places, approach, standing, input, .. } = self;
-        let at_rest = input.hertz * libm::cbrt(0.5 * vehicle.axle_load()).powi(2);
+        let (at_rest, own) = (at_rest(input.hertz, vehicle), rail.own_height());
         approach.clear();
         approach.resize(places.len() * self.rails, 0.0);
         for (r, (rail_state, scratch)) in rails.0.iter().zip(&mut *rails.1).enumerate() {
@@ -195,8 +201,9 @@ impl Rolling {
             rail.free_heights(rail_state, places.iter().map(|p| p[0]), scratch, |height| {
                 let [at, share] = places[axle];
                 let uneven = input.irregularity.height(at);
-                approach[axle * self.rails + r] =
-                    at_rest + if share > 0.0 { share * (height + uneven - standing[axle]) } else { 0.0 };
+                // A rail under a part of the wheel sinks by this part of the height of the even track.
+                let raised = share * (height + uneven - own - share * standing[axle]);
+                approach[axle * self.rails + r] = at_rest + if share > 0.0 { raised } else { 0.0 };
                 axle += 1;
             });
         }
@@ -280,8 +287,12 @@ impl Rolling {
             }
         }
         for (c, car) in state.cars.iter_mut().enumerate() {
-            self.vehicle.step(car, std::array::from_fn(|k| on_axle(AXLES * c + k, &state.forces)));
             let own = &self.places[AXLES * c..AXLES * (c + 1)];
+            let forces = std::array::from_fn(|k| {
+                let even = (1.0 - own[k][1]) * self.even_damping * car.wheelset_velocity(k);
+                on_axle(AXLES * c + k, &state.forces) - even
+            });
+            self.vehicle.step(car, forces);
             if own.iter().any(|p| p[1] == 1.0) {
                 state.body.add(car.body_acceleration(), rail.dt());
             }
@@ -317,6 +328,11 @@ impl Rolling {
             unconverged_steps: state.unconverged,
         })
     }
+}
+
+/// Static approach of a wheel [m].
+fn at_rest(hertz: f64, vehicle: &Vehicle) -> f64 {
+    hertz * libm::cbrt(0.5 * vehicle.axle_load()).powi(2)
 }
 
 /// Force F = n (δ/G)^(3/2) with δ = `free` − `soft` F, 0 for `free` ≤ 0.

@@ -179,6 +179,11 @@ impl VehicleState {
         self.u[WHEELS + k]
     }
 
+    /// Upward velocity of wheelset `k` [m/s].
+    pub fn wheelset_velocity(&self, k: usize) -> f64 {
+        self.v[WHEELS + k]
+    }
+
     /// Upward acceleration of the body's centre [m/s²].
     pub fn body_acceleration(&self) -> f64 {
         self.a[0]
