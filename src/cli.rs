@@ -219,9 +219,21 @@ pub struct NewArgs {
 /// Arguments of `study`.
 #[derive(Debug, Args)]
 pub struct StudyArgs {
-    /// Study file (TOML).
+    /// Study file (TOML); with --trade, a scene.
     #[arg(required_unless_present = "score")]
     pub study: Option<PathBuf>,
+    /// Vary each setting of accuracy of the scene alone; the reference has the finest of each.
+    #[arg(long, conflicts_with = "score")]
+    pub trade: bool,
+    /// With --trade: set one key of the scene, as key.path=value; repeatable.
+    #[arg(long, value_name = "KEY=VALUE", requires = "trade")]
+    pub set: Vec<String>,
+    /// With --trade: number of random specimens, 0 for the seeds of the scene [default: 3].
+    #[arg(long, value_name = "N", requires = "trade")]
+    pub seeds: Option<u64>,
+    /// With --trade: largest relative error of the recommended case [default: 0.05].
+    #[arg(long, value_name = "E", requires = "trade")]
+    pub tolerance: Option<f64>,
     /// Run nothing: score predictions against measured values (CSV files as in inputs/ballast/blind).
     #[arg(long, num_args = 2, value_names = ["PREDICTIONS", "MEASURED"], conflicts_with_all = ["study", "out", "threads", "jobs", "task", "merge", "resume", "force", "quiet"])]
     pub score: Vec<PathBuf>,

@@ -81,12 +81,25 @@ def shear(folder):
     }
 
 
+def side(h, name, column, combine):
+    """Column of a side: of a plane, or of its strips name1, name2, ... combined row by row."""
+    if f"{name}_{column}" in h:
+        return h[f"{name}_{column}"]
+    strips = [h[k] for k in h if re.fullmatch(rf"{name}\d+_{column}", k)]
+    return [combine(row) for row in zip(*strips)]
+
+
 def triaxial(folder):
-    """Peak angle against the cell pressure at it, means over 20 ms; volume strain, dilation negative. Cube of 0.3 m, shear from 0.15 s on."""
+    """Peak angle against the cell pressure at it, means over 20 ms; volume strain, dilation negative. Cube of 0.3 m, shear from 0.15 s on.
+
+    Sides are planes or strips of equal height.
+    """
     h = table(folder, "history.csv")
     t = h["time"]
-    top, x, y = (smooth(t, h[k], 0.01) for k in ("top_force_z", "side_x_force_x", "side_y_force_y"))
-    a, b, c = ([0.3 + v for v in h[k]] for k in ("side_x_displacement_x", "side_y_displacement_y", "top_displacement_z"))
+    forces = h["top_force_z"], side(h, "side_x", "force_x", sum), side(h, "side_y", "force_y", sum)
+    ways = side(h, "side_x", "displacement_x", mean), side(h, "side_y", "displacement_y", mean), h["top_displacement_z"]
+    top, x, y = (smooth(t, values, 0.01) for values in forces)
+    a, b, c = ([0.3 + v for v in values] for values in ways)
     start = next(i for i in range(len(t)) if t[i] >= 0.15)
     axial = [abs(top[i]) / (a[i] * b[i]) / 1e3 for i in range(len(t))]
     cell = [(abs(x[i]) / (b[i] * c[i]) + abs(y[i]) / (a[i] * c[i])) / 2e3 for i in range(len(t))]

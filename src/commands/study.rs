@@ -31,7 +31,12 @@ pub fn study(args: StudyArgs) -> Result<(), Failure> {
         interrupt: Interrupt::on_signals("the active runs have written checkpoints")?,
     };
     let check = |scene: &Path, set: &[String]| check::check(&Source::new(scene, set), None, false).map(drop);
-    let study::Finished { text, failure } = study::execute(&file, &options, &check)?;
+    let study::Finished { text, failure } = if args.trade {
+        let (set, seeds, tolerance) = (args.set.as_slice(), args.seeds, args.tolerance);
+        study::trade(&study::Request { scene: &file, set, seeds, tolerance, quiet }, &options, &check)?
+    } else {
+        study::execute(&file, &options, &check)?
+    };
     // Tables are saved, so output may fail.
     if !quiet && let Err(failure) = output::print(&text) {
         message::note(&format!("standard output: {failure}"));

@@ -5,6 +5,8 @@ use super::file::Combine;
 use super::hazard::CaseMaps;
 use super::outcome::Outcome;
 use super::plan::Plan;
+use super::point::{Column, Point};
+use super::posterior::Posterior;
 use super::statistics::{Regression, rank_correlation};
 use super::target::{Target, misfit};
 use serde::{Deserialize, Serialize};
@@ -31,45 +33,9 @@ pub struct Analysis {
     /// Hazard maps of cases.
     #[serde(default)]
     pub hazard: Vec<CaseMaps>,
-}
-
-/// Name and unit.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Column {
-    /// Name.
-    pub name: String,
-    /// Unit, or empty.
-    pub unit: String,
-}
-
-impl Column {
-    /// Returns name and unit.
-    pub fn head(&self) -> String {
-        if self.unit.is_empty() { self.name.clone() } else { format!("{} [{}]", self.name, self.unit) }
-    }
-}
-
-/// Case with results.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Point {
-    /// Label.
-    pub case: String,
-    /// Parameter values; none for a separate reference.
-    pub values: Vec<Option<f64>>,
-    /// Planned runs.
-    pub runs: usize,
-    /// Completed runs.
-    pub done: usize,
-    /// Mean, standard deviation and standard error over seeds by quantity.
-    pub results: Vec<[Option<f64>; 3]>,
-    /// √(mean of squared deviations over tolerances).
-    pub misfit: Option<f64>,
-}
-
-impl Point {
-    fn complete(&self) -> Option<Vec<f64>> {
-        self.values.iter().copied().collect()
-    }
+    /// Posterior of sampled parameters with targets.
+    #[serde(default)]
+    pub posterior: Option<Posterior>,
 }
 
 /// Sensitivity of a quantity to the parameters.
@@ -131,16 +97,20 @@ impl Analysis {
         best.sort_by(|a, b| {
             points[*a].misfit.partial_cmp(&points[*b].misfit).unwrap_or(std::cmp::Ordering::Equal)
         });
+        let sampled = plan.combine.is_none();
+        let posterior =
+            sampled.then(|| Posterior::of(&plan.factors, &points, &results, &plan.targets)).flatten();
         Analysis {
             factors: plan.factors.clone(),
             targets: plan.targets.clone(),
             failed: outcome.rows.iter().flat_map(|row| row.reasons.iter().cloned()).collect(),
-            sampled: plan.combine.is_none(),
+            sampled,
             results,
             points,
             sensitivities,
             best,
             hazard: Vec::new(),
+            posterior,
         }
     }
 }

@@ -102,7 +102,8 @@ fn common_abscissae(curves: &[&[[f64; 2]]]) -> Option<Vec<f64>> {
     (low <= high).then_some(all)
 }
 
-fn value_at(curve: &[[f64; 2]], x: f64) -> Option<f64> {
+/// Returns the value at `x`, linear between points; none outside.
+pub fn value_at(curve: &[[f64; 2]], x: f64) -> Option<f64> {
     let behind = curve.partition_point(|p| p[0] < x);
     let after = curve.get(behind)?;
     if after[0] == x {

@@ -19,6 +19,9 @@ pub struct Factor {
     pub range: [f64; 2],
     /// Categories, numbered from 1; empty for numbers.
     pub categories: Vec<String>,
+    /// Whether a seed of random specimens.
+    #[serde(default)]
+    pub random: bool,
 }
 
 impl Factor {
@@ -50,7 +53,7 @@ impl Factor {
             let range = [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)];
             let log = range[0] > 0.0 && range[1] >= LOGARITHMIC * range[0];
             let unit = numbers.first().map_or("", |n| n.1).to_string();
-            let factor = Factor { name: name.into(), unit, log, range, categories: Vec::new() };
+            let factor = Factor { name: name.into(), unit, log, range, ..Factor::default() };
             return (factor, levels.iter().map(|l| Some(number((*l)?)?.0)).collect());
         }
         let mut categories: Vec<String> = Vec::new();
@@ -66,7 +69,7 @@ impl Factor {
             }));
         }
         let range = [1.0, categories.len() as f64];
-        (Factor { name: name.into(), unit: String::new(), log: false, range, categories }, values)
+        (Factor { name: name.into(), range, categories, ..Factor::default() }, values)
     }
 }
 

@@ -208,11 +208,17 @@ pub struct QuantityTable {
     pub summary: Option<String>,
     /// Results table, such as `cycles.csv`.
     pub file: Option<String>,
-    /// Column without unit.
-    pub column: Option<String>,
+    /// Column without unit, or several whose sum counts.
+    pub column: Option<Columns>,
     /// Reduction of the column; default: last value.
     pub take: Option<Take>,
-    /// Abscissa of a curve; default: first column.
+    /// Value of `against` at which `"at"` is read.
+    pub at: Option<f64>,
+    /// Smallest value of `against`; default: all rows.
+    pub from: Option<f64>,
+    /// Value of `against` at which the column counts as 0; default: none.
+    pub since: Option<f64>,
+    /// Abscissa of a curve, of `at`, `from` and `since`; default: first column.
     pub against: Option<String>,
     /// Logarithmic abscissa; default false.
     pub log: Option<bool>,
@@ -224,6 +230,26 @@ pub struct QuantityTable {
     pub exact: Option<f64>,
     /// Largest error of the recommended set; default: of the study.
     pub tolerance: Option<f64>,
+}
+
+/// One or several columns.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged)]
+pub enum Columns {
+    /// One.
+    One(String),
+    /// Several.
+    Sum(Vec<String>),
+}
+
+impl Columns {
+    /// Returns the names.
+    pub fn names(&self) -> &[String] {
+        match self {
+            Columns::One(name) => std::slice::from_ref(name),
+            Columns::Sum(names) => names,
+        }
+    }
 }
 
 /// Reduction of a column.
@@ -239,6 +265,10 @@ pub enum Take {
     Max,
     /// The smallest value.
     Min,
+    /// Largest less smallest value.
+    Range,
+    /// Value at `at`, linear between rows.
+    At,
     /// Curve over another column.
     Curve,
 }

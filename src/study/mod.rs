@@ -6,6 +6,7 @@ mod analysis;
 mod axis;
 mod curve;
 mod design;
+mod emulator;
 mod extreme;
 mod factor;
 mod figure;
@@ -19,6 +20,8 @@ mod page;
 mod parameter;
 mod plan;
 mod plot;
+mod point;
+mod posterior;
 mod process;
 mod quantity;
 mod sample;
@@ -30,10 +33,12 @@ mod summary;
 mod table;
 mod target;
 mod text;
+mod trade;
 
 pub use label::file_names;
 pub use page::{is_study, write as report};
 pub use score::scored;
+pub use trade::Request;
 
 use analysis::Analysis;
 use file::StudyFile;
@@ -47,6 +52,7 @@ use trackbed_input::scene::Document;
 use trackbed_io::failure::Failure;
 use trackbed_io::message;
 use trackbed_run::{self as run, Interrupt, Lock};
+use trade::Trade;
 
 const PRINTED: usize = 20;
 const SPELLED_OUT: usize = 3;
@@ -102,10 +108,46 @@ pub fn count_runs(file: &Path) -> Result<usize, Failure> {
 /// Input errors, interrupts, a failed reference.
 pub fn execute(file: &Path, options: &Options, check: Check<'_>) -> Result<Finished, Failure> {
     let document = Document::open(file)?;
-    let parsed: StudyFile = document.read()?;
-    let plan = Plan::new(&document, &parsed)?;
     let dir = options.out.clone().unwrap_or_else(|| run::default_folder(file, &[]));
-    let store = Store::new(&dir);
+    let origin = Origin { study: run::quoted(file), written: None };
+    perform(&document, &dir, &origin, options, check)
+}
+
+/// Runs a study of the accuracy and cost of the settings of a scene, and returns its tables.
+///
+/// # Errors
+/// As [`execute`]; a scene without settings or results to compare.
+pub fn trade(request: &Request<'_>, options: &Options, check: Check<'_>) -> Result<Finished, Failure> {
+    let trade = Trade::new(request, check)?;
+    let dir = options.out.clone().unwrap_or_else(|| run::default_folder(request.scene, request.set));
+    let absolute = std::path::absolute(request.scene).map_err(|e| Failure::Input(e.to_string()))?;
+    let file = dir.join(trade::FILE);
+    let document = Document::parse(Path::new(trade::FILE), trade.text(request.scene))?;
+    let origin = Origin { study: run::quoted(&file), written: Some((file, trade.text(&absolute))) };
+    // Checked with the plan.
+    let mut finished = perform(&document, &dir, &origin, options, &|_, _| Ok(()))?;
+    finished.text += &trade.left_out.iter().map(|note| format!("left out: {note}\n")).collect::<String>();
+    Ok(finished)
+}
+
+/// Origin of a study.
+struct Origin {
+    /// Study file in commands.
+    study: String,
+    /// Study file that the study itself writes.
+    written: Option<(PathBuf, String)>,
+}
+
+fn perform(
+    document: &Document,
+    dir: &Path,
+    origin: &Origin,
+    options: &Options,
+    check: Check<'_>,
+) -> Result<Finished, Failure> {
+    let parsed: StudyFile = document.read()?;
+    let plan = Plan::new(document, &parsed)?;
+    let store = Store::new(dir);
     if options.merge && !dir.join("runs").is_dir() {
         let expected = "a directory with runs of the study (--out)";
         return Err(Failure::Input(format!(
@@ -113,14 +155,14 @@ pub fn execute(file: &Path, options: &Options, check: Check<'_>) -> Result<Finis
             dir.display()
         )));
     }
-    let hashes = prepare(&document, &plan, options, check)?;
+    let hashes = prepare(document, &plan, options, check)?;
     // Each run has a lock.
     let _lock = match options.part {
-        None => Some(Lock::take(&dir)?),
+        None => Some(Lock::take(dir)?),
         Some(_) => None,
     };
     if !options.merge {
-        carry_out(file, &plan, &store, &hashes, options)?;
+        carry_out(document.file(), origin, &plan, &store, &hashes, options)?;
         if let Some((k, n)) = options.part {
             let text =
                 format!("{}: runs {k}, {k} + {n}, … completed; `--merge` writes the tables\n", dir.display());
@@ -207,6 +249,7 @@ fn scene_hash(scene: &Document, set: &[String]) -> Result<String, Failure> {
 
 fn carry_out(
     file: &Path,
+    origin: &Origin,
     plan: &Plan,
     store: &Store,
     hashes: &[String],
@@ -214,6 +257,13 @@ fn carry_out(
 ) -> Result<(), Failure> {
     let own =
         || plan.runs.iter().zip(hashes).enumerate().filter(|(k, _)| ours(options, *k)).map(|(_, own)| own);
+    if let Some((path, text)) = &origin.written
+        && !options.force
+        && std::fs::read_to_string(path).is_ok_and(|other| other != *text)
+    {
+        let expected = "the same options, --force, or another --out";
+        return Err(Failure::Input(format!("{}: found another study, expected {expected}", path.display())));
+    }
     if !options.resume
         && !options.force
         && let Some((run, _)) = own().find(|(run, _)| store.has(run))
@@ -237,6 +287,9 @@ fn carry_out(
         message::say(&format!("{kept} of {total} runs exist"));
     }
     store.make()?;
+    if let Some((path, text)) = &origin.written {
+        store::write(path, text)?;
+    }
     if !plan.has_reference() {
         store::write(&store.dir().join("samples.csv"), &csv(table::samples(plan))?)?;
     }
@@ -248,7 +301,7 @@ fn carry_out(
     result.map_err(|failure| match failure {
         Failure::Interrupted(_) => {
             let part = options.part.map_or(String::new(), |(k, n)| format!(" --task {k}/{n}"));
-            let (study, dir) = (run::quoted(file), run::quoted(store.dir()));
+            let (study, dir) = (&origin.study, run::quoted(store.dir()));
             Failure::Interrupted(format!(
                 "interrupted; resume with: trackbed study {study} --resume --out {dir}{part}"
             ))
@@ -319,7 +372,7 @@ fn tables(plan: &Plan, store: &Store, found: &[Found]) -> Result<Finished, Failu
             &format!("{} of {} runs are missing: {}\n", labels.len(), plan.runs.len(), labels.join(", "));
     }
     if plan.has_reference() {
-        lines += &format!("{}\n", text::recommendation(plan, &outcome));
+        lines += &format!("{}\n{}\n", text::front(&outcome), text::recommendation(plan, &outcome));
     }
     lines += &format!("Table: {}\n", store.dir().join("study.md").display());
     let failure = if plan.has_reference() { None } else { failed_runs(plan, store, found) };

@@ -44,6 +44,7 @@ pub fn write(options: &Options) -> Result<PathBuf, Failure> {
         failed(&analysis),
         hazard_maps(dir, &analysis),
         targets(&analysis),
+        posterior(&analysis),
         sensitivity(&analysis),
         extremes(&study),
         responses(&analysis),
@@ -103,7 +104,7 @@ fn html_of(Table { heads, rows }: &Table) -> Markup {
 }
 
 fn overview(study: &Value, analysis: &Analysis) -> Option<Section> {
-    let sum = |of: fn(&super::analysis::Point) -> usize| analysis.points.iter().map(of).sum::<usize>();
+    let sum = |of: fn(&super::point::Point) -> usize| analysis.points.iter().map(of).sum::<usize>();
     let mut rows = vec![
         (
             "scene",
@@ -156,6 +157,14 @@ fn targets(analysis: &Analysis) -> Option<Section> {
         "Misfit: root mean square of the deviations in tolerances. ±: standard error over the seeds.",
     );
     Section::new("targets", "Targets", joined([html_of(&summary::targets(analysis)), best, note]))
+}
+
+fn posterior(analysis: &Analysis) -> Option<Section> {
+    let posterior = analysis.posterior.as_ref()?;
+    let notes = posterior.notes().into_iter().map(|note| paragraph(&format!("{note}.")));
+    let tables =
+        [html_of(&posterior.parameter_table()), html_of(&posterior.prediction_table()), joined(notes)];
+    Section::new("posterior", "Posterior", joined(tables))
 }
 
 fn sensitivity(analysis: &Analysis) -> Option<Section> {

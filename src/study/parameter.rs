@@ -103,7 +103,7 @@ fn factor(document: &Document, index: usize, table: &ParameterTable) -> Result<F
     if table.integer && (low.fract() != 0.0 || high.fract() != 0.0 || low.abs().max(high.abs()) > LARGEST) {
         return fault("range", found(), "two whole numbers of at most 2⁵³ with integer = true");
     }
-    Ok(Factor { name, unit, log, range: table.range, categories: Vec::new() })
+    Ok(Factor { name, unit, log, range: table.range, random: last == "seed", ..Factor::default() })
 }
 
 fn points(document: &Document, sampling: &Sampling, dimensions: usize) -> Result<Vec<Vec<f64>>, SceneError> {

@@ -27,23 +27,42 @@ pub struct Quantity {
 }
 
 /// Source of a quantity.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Source {
     /// Path in `summary.json`.
     Summary(String),
     /// Reduced table column.
-    Column(String, String, Take),
+    Column(Reduced),
     /// Column over another, default the first.
     Curve {
         /// Table.
         file: String,
-        /// Column.
-        column: String,
+        /// Columns whose sum counts.
+        columns: Vec<String>,
         /// Abscissa.
         against: Option<String>,
         /// Logarithmic abscissa.
         log: bool,
     },
+}
+
+/// Sum of columns, reduced to a number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reduced {
+    /// Table.
+    pub file: String,
+    /// Columns.
+    pub columns: Vec<String>,
+    /// Reduction.
+    pub take: Take,
+    /// Abscissa of `at`, `from` and `since`; default the first column.
+    pub against: Option<String>,
+    /// Abscissa of the value, with `Take::At`.
+    pub at: Option<f64>,
+    /// Smallest abscissa.
+    pub from: Option<f64>,
+    /// Abscissa whose value is subtracted.
+    pub since: Option<f64>,
 }
 
 /// Resolves the quantities; `cycles`: the scene has load cycles.
@@ -109,10 +128,13 @@ fn of_cycles(tolerance: f64) -> Vec<Quantity> {
         exact: None,
         tolerance,
     };
-    let column = |column: &Definition, take| Source::Column(file.clone(), column.name.into(), take);
+    let column = |column: &Definition, take| {
+        let (file, columns) = (file.clone(), vec![column.name.into()]);
+        Source::Column(Reduced { file, columns, take, against: None, at: None, from: None, since: None })
+    };
     let curve = Source::Curve {
         file: file.clone(),
-        column: cycles::SETTLEMENT.name.into(),
+        columns: vec![cycles::SETTLEMENT.name.into()],
         against: None,
         log: true,
     };
@@ -130,7 +152,7 @@ fn one(document: &Document, index: usize, table: &QuantityTable, study: f64) -> 
     let source = source_of(document, index, table)?;
     let default = match &source {
         Source::Summary(path) => path.rsplit('.').next().unwrap_or(path).to_string(),
-        Source::Column(_, column, _) | Source::Curve { column, .. } => column.clone(),
+        Source::Column(Reduced { columns, .. }) | Source::Curve { columns, .. } => columns.join(" + "),
     };
     let name = table.name.clone().unwrap_or(default);
     if name.trim().is_empty() || name.contains(['"', '\n', '|']) {
@@ -165,8 +187,14 @@ fn source_of(document: &Document, index: usize, table: &QuantityTable) -> Result
     let place = |key: &str| format!("quantity.{index}.{key}");
     let problem = |key: &str, problem: Problem| Err(document.problem(&place(key), problem));
     let fault = |key: &str, found: &str, expected: &str| problem(key, Problem::value(found, expected));
-    let of_table =
-        [("file", table.file.is_some()), ("column", table.column.is_some()), ("take", table.take.is_some())];
+    let of_table = [
+        ("file", table.file.is_some()),
+        ("column", table.column.is_some()),
+        ("take", table.take.is_some()),
+        ("at", table.at.is_some()),
+        ("from", table.from.is_some()),
+        ("since", table.since.is_some()),
+    ];
     if let Some(path) = &table.summary {
         let other = of_table.iter().find(|(_, given)| *given);
         return match other {
@@ -187,19 +215,38 @@ fn source_of(document: &Document, index: usize, table: &QuantityTable) -> Result
             "the name of a CSV table of a run, such as \"cycles.csv\"",
         );
     }
-    let Some(column) = table.column.clone() else {
+    let columns = table.column.as_ref().map(|column| column.names().to_vec()).unwrap_or_default();
+    if columns.is_empty() {
         return problem("column", Problem::missing("a column of the table"));
-    };
-    let take = table.take.unwrap_or_default();
-    if take == Take::Curve {
-        let (against, log) = (table.against.clone(), table.log.unwrap_or(false));
-        return Ok(Source::Curve { file: file.clone(), column, against, log });
     }
-    if table.against.is_some() {
-        return problem("against", Problem::no_effect("`take = \"curve\"`"));
+    let take = table.take.unwrap_or_default();
+    let is_at = take == Take::At;
+    if table.at.is_some() != is_at {
+        return match is_at {
+            true => problem("at", Problem::missing("a number with `take = \"at\"`")),
+            false => problem("at", Problem::no_effect("`take = \"at\"`")),
+        };
+    }
+    for (key, value) in [("at", table.at), ("from", table.from), ("since", table.since)] {
+        if let Some(value) = value.filter(|v| !v.is_finite()) {
+            return fault(key, &value.to_string(), "a finite number");
+        }
+    }
+    let (file, against) = (file.clone(), table.against.clone());
+    if take == Take::Curve {
+        if let Some((key, _)) =
+            [("from", table.from), ("since", table.since)].iter().find(|(_, v)| v.is_some())
+        {
+            return problem(key, Problem::conflict("`take = \"curve\"`"));
+        }
+        return Ok(Source::Curve { file, columns, against, log: table.log.unwrap_or(false) });
+    }
+    if against.is_some() && table.at.or(table.from).or(table.since).is_none() {
+        return problem("against", Problem::no_effect("`take = \"curve\"`, `at`, `from` or `since`"));
     }
     if table.log.is_some() {
         return problem("log", Problem::no_effect("`take = \"curve\"`"));
     }
-    Ok(Source::Column(file.clone(), column, take))
+    let QuantityTable { at, from, since, .. } = *table;
+    Ok(Source::Column(Reduced { file, columns, take, against, at, from, since }))
 }

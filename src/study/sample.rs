@@ -1,8 +1,8 @@
 //! Reads quantities from results.
 
-use super::curve::Sample;
+use super::curve::{self, Sample};
 use super::file::Take;
-use super::quantity::{Quantity, Source};
+use super::quantity::{Quantity, Reduced, Source};
 use std::path::Path;
 use trackbed_io::read::source;
 use trackbed_io::replaced;
@@ -15,17 +15,21 @@ pub fn read(quantity: &Quantity, folder: &Path) -> Result<(Sample, String), Stri
     let own = quantity.unit.clone();
     let (sample, unit) = match &quantity.source {
         Source::Summary(path) => (Sample::Number(number_at(folder, path)?), String::new()),
-        Source::Column(file, column, take) => {
-            let (values, unit) = Table::read(folder, file)?.column(column)?;
-            (Sample::Number(reduce(file, &values, *take)?), unit)
+        Source::Column(reduced) => {
+            let table = Table::read(folder, &reduced.file)?;
+            let (values, unit) = table.sum(&reduced.columns)?;
+            let points: Vec<[f64; 2]> = table
+                .abscissa(reduced.against.as_ref())?
+                .into_iter()
+                .zip(values)
+                .map(|(x, y)| [x, y])
+                .collect();
+            (Sample::Number(reduce(reduced, points)?), unit)
         }
-        Source::Curve { file, column, against, log } => {
+        Source::Curve { file, columns, against, log } => {
             let table = Table::read(folder, file)?;
-            let (values, unit) = table.column(column)?;
-            let abscissa = match against {
-                Some(name) => table.column(name)?.0,
-                None => table.rows.iter().map(|row| row[0]).collect(),
-            };
+            let (values, unit) = table.sum(columns)?;
+            let abscissa = table.abscissa(against.as_ref())?;
             let points = abscissa.into_iter().zip(values);
             let points = points.map(|(x, y)| [if *log { libm::log10(x) } else { x }, y]);
             // The row at 0 has no logarithm.
@@ -46,13 +50,29 @@ pub fn read(quantity: &Quantity, folder: &Path) -> Result<(Sample, String), Stri
     Ok((sample, unit))
 }
 
-fn reduce(file: &str, values: &[f64], take: Take) -> Result<f64, String> {
-    let Some(last) = values.last() else { return Err(format!("{file} has no rows")) };
-    Ok(match take {
-        Take::Last | Take::Curve => *last,
+fn reduce(reduced: &Reduced, points: Vec<[f64; 2]>) -> Result<f64, String> {
+    let value = |at: f64| {
+        let Sample::Curve(points) = Sample::curve(points.clone()) else { unreachable!("a curve") };
+        curve::value_at(&points, at).ok_or_else(|| format!("{} has no rows around {at}", reduced.file))
+    };
+    let zero = reduced.since.map(value).transpose()?.unwrap_or(0.0);
+    if let Some(at) = reduced.at {
+        return Ok(value(at)? - zero);
+    }
+    let kept = points.iter().filter(|p| reduced.from.is_none_or(|from| p[0] >= from));
+    let values: Vec<f64> = kept.map(|p| p[1] - zero).collect();
+    let Some(last) = values.last() else {
+        let from = reduced.from.map_or(String::new(), |from| format!(" from {from} on"));
+        return Err(format!("{} has no rows{from}", reduced.file));
+    };
+    let largest = || values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let least = || values.iter().copied().fold(f64::INFINITY, f64::min);
+    Ok(match reduced.take {
+        Take::Last | Take::Curve | Take::At => *last,
         Take::Mean => values.iter().sum::<f64>() / values.len() as f64,
-        Take::Max => values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        Take::Min => values.iter().copied().fold(f64::INFINITY, f64::min),
+        Take::Max => largest(),
+        Take::Min => least(),
+        Take::Range => largest() - least(),
     })
 }
 
@@ -103,6 +123,27 @@ impl Table<'_> {
         Ok(Table { file, heads, rows })
     }
 
+    /// First column, or the one of that name.
+    fn abscissa(&self, name: Option<&String>) -> Result<Vec<f64>, String> {
+        match name {
+            Some(name) => Ok(self.column(name)?.0),
+            None => Ok(self.rows.iter().map(|row| row[0]).collect()),
+        }
+    }
+
+    /// Sum of columns, with the unit of the first.
+    fn sum(&self, names: &[String]) -> Result<(Vec<f64>, String), String> {
+        let (mut sum, unit) = self.column(&names[0])?;
+        for name in &names[1..] {
+            let (values, other) = self.column(name)?;
+            if other != unit {
+                return Err(format!("{}: columns of [{unit}] and [{other}] have no sum", self.file));
+            }
+            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+        }
+        Ok((sum, unit))
+    }
+
     fn column(&self, name: &str) -> Result<(Vec<f64>, String), String> {
         let split = |head: &str| {
             let (name, unit) = head.split_once(" [").unwrap_or((head, ""));
@@ -113,5 +154,52 @@ impl Table<'_> {
             return Err(format!("{} has no column `{name}`, but {}", self.file, names.join(", ")));
         };
         Ok((self.rows.iter().map(|row| row[at]).collect(), split(&self.heads[at]).1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn reduced(take: Take) -> Reduced {
+        let columns = vec!["a".into(), "b".into()];
+        Reduced {
+            file: "history.csv".into(),
+            columns,
+            take,
+            against: None,
+            at: None,
+            from: None,
+            since: None,
+        }
+    }
+
+    fn points() -> Vec<[f64; 2]> {
+        vec![[0.0, 1.0], [1.0, 5.0], [2.0, 3.0], [4.0, 4.0]]
+    }
+
+    #[test]
+    fn columns_are_reduced() {
+        let of = |r: Reduced| reduce(&r, points()).unwrap();
+        assert_eq!(of(reduced(Take::Range)), 4.0);
+        assert_eq!(of(Reduced { from: Some(2.0), ..reduced(Take::Range) }), 1.0);
+        assert_eq!(of(Reduced { from: Some(1.5), ..reduced(Take::Max) }), 4.0);
+        assert_eq!(of(Reduced { at: Some(3.0), ..reduced(Take::At) }), 3.5);
+        assert_eq!(of(Reduced { at: Some(3.0), since: Some(0.5), ..reduced(Take::At) }), 0.5);
+        assert_eq!(of(Reduced { since: Some(0.0), ..reduced(Take::Last) }), 3.0);
+        let fault = reduce(&Reduced { at: Some(9.0), ..reduced(Take::At) }, points()).unwrap_err();
+        assert_eq!(fault, "history.csv has no rows around 9");
+        let fault = reduce(&Reduced { from: Some(9.0), ..reduced(Take::Last) }, points()).unwrap_err();
+        assert_eq!(fault, "history.csv has no rows from 9 on");
+    }
+
+    #[test]
+    fn columns_of_equal_units_are_added() {
+        let heads = ["time [s]", "a [m]", "b [m]", "c [N]"].map(String::from).to_vec();
+        let table = Table { file: "history.csv", heads, rows: vec![vec![0.0, 1.0, 2.0, 4.0]] };
+        let (sum, unit) = table.sum(&["a".into(), "b".into()]).unwrap();
+        assert_eq!((sum, unit.as_str()), (vec![3.0], "m"));
+        let fault = table.sum(&["a".into(), "c".into()]).unwrap_err();
+        assert_eq!(fault, "history.csv: columns of [m] and [N] have no sum");
     }
 }

@@ -139,6 +139,11 @@ pub fn sections(analysis: &Analysis) -> String {
         text += &format!("\n## Targets\n\n{}", targets(analysis).markdown());
         text += &format!("\n## Cases of smallest misfit\n\n{}", best(analysis, BEST).markdown());
     }
+    if let Some(posterior) = &analysis.posterior {
+        text += &format!("\n## Posterior\n\n{}", posterior.parameter_table().markdown());
+        text += &format!("\n{}\n", posterior.prediction_table().markdown());
+        posterior.notes().iter().for_each(|note| text += &format!("* {note}.\n"));
+    }
     if !analysis.factors.is_empty() {
         text += &format!("\n## Sensitivity\n\n{}", sensitivities(analysis).markdown());
         let notes = notes(analysis);
@@ -201,5 +206,11 @@ pub fn printed_best(analysis: &Analysis) -> String {
     } else {
         format!("Cases of smallest misfit:\n{}", best.aligned(1))
     };
-    format!("\n{}\n{cases}", targets(analysis).aligned(1))
+    let mut text = format!("\n{}\n{cases}", targets(analysis).aligned(1));
+    if let Some(posterior) = &analysis.posterior {
+        text += &format!("\n{}\n", posterior.parameter_table().aligned(1));
+        text += &posterior.prediction_table().aligned(1);
+        posterior.notes().iter().for_each(|note| text += &format!("note: {note}.\n"));
+    }
+    text
 }

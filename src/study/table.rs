@@ -51,7 +51,7 @@ pub fn cases(plan: &Plan, outcome: &Outcome, analysis: &Analysis) -> Result<Stri
     heads.extend(["reasons", "steps", "cpu [s]", "wall [s]"].map(String::from));
     heads.extend(compared.then(|| "speed_up".to_string()));
     heads.push("peak_memory [bytes]".into());
-    let row = |(row, point): (&super::outcome::Row, &super::analysis::Point)| {
+    let row = |(row, point): (&super::outcome::Row, &super::point::Point)| {
         let mut cells = vec![row.case.clone()];
         cells.extend((0..plan.axes.len()).map(|k| row.levels.get(k).cloned().unwrap_or_default()));
         cells.extend([row.runs.to_string(), row.done.to_string()]);

@@ -20,7 +20,7 @@ pub fn markdown(plan: &Plan, outcome: &Outcome) -> String {
     );
     let rows = cells(plan, outcome, usize::MAX);
     text += &layout::markdown(&rows);
-    text += &format!("\n{}\n", recommendation(plan, outcome));
+    text += &format!("\n{}\n\n{}\n", front(outcome), recommendation(plan, outcome));
     if outcome.rows.iter().any(|row| row.quantities.iter().any(|c| c.error_standard_error.is_some())) {
         text += "\n± is the standard error over the seeds. An error below it is not significant.\n";
     }
@@ -97,6 +97,17 @@ fn percent(share: f64) -> String {
 fn plain_percent(share: f64) -> String {
     let text = format!("{:.6}", 100.0 * share);
     format!("{} %", text.trim_end_matches('0').trim_end_matches('.'))
+}
+
+/// Formats the Pareto front, cheapest case first.
+pub fn front(outcome: &Outcome) -> String {
+    let case = |k: &usize| {
+        let row = &outcome.rows[*k];
+        let over = row.error_over_tolerance.map_or("–".into(), four_digits);
+        format!("\"{}\" ({} s, {over})", row.case, cpu(row).map_or("–".into(), |s| format!("{s:.2}")))
+    };
+    let cases: Vec<String> = outcome.front.iter().map(case).collect();
+    format!("Pareto front, with CPU time and largest error in tolerances: {}.", cases.join(", "))
 }
 
 /// Formats the recommendation.

@@ -11,6 +11,7 @@ mod parts;
 mod refused;
 mod refused_parameters;
 mod shipped;
+mod trade;
 
 /// Sphere against a wall at 1 m/s: half a period of a mass on a spring, stopped midway.
 const SWING: &str = r#"title = "sphere on a spring"

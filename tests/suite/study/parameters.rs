@@ -232,7 +232,7 @@ fn report_shows_study() {
     let out = folder.join("out").display().to_string();
     trackbed(["report", &out]).good();
     let page = Page::read(&folder.join("out/report.html"));
-    assert_eq!(page.sections, ["overview", "targets", "sensitivity", "responses", "cases"]);
+    assert_eq!(page.sections, ["overview", "targets", "posterior", "sensitivity", "responses", "cases"]);
     assert_eq!(page.figures, 3, "a tornado chart and two response plots");
     for text in [
         "Height of a free sphere",

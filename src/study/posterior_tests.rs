@@ -1,0 +1,77 @@
+use super::*;
+use trackbed_dem::random::Random;
+
+fn factor(name: &str) -> Factor {
+    Factor { name: name.into(), range: [0.0, 2.0], ..Factor::default() }
+}
+
+/// Uniform noise of standard deviation 0.05 on q = 2 x; p = x + y.
+fn study() -> (Vec<Factor>, Vec<Point>, Vec<Column>) {
+    let of = |(k, u): (usize, Vec<f64>)| {
+        let (x, y) = (2.0 * u[0], 2.0 * u[1]);
+        let noise = 0.05 * 12.0_f64.sqrt() * (Random::new(3, k as u64).uniform() - 0.5);
+        let results = vec![[Some(2.0 * x + noise), None, None], [Some(x + y), None, None]];
+        Point { values: vec![Some(x), Some(y)], results, ..Point::default() }
+    };
+    let points = sobol(80, 2, Some(7)).into_iter().enumerate().map(of).collect();
+    let column = |name: &str| Column { name: name.into(), unit: String::new() };
+    (vec![factor("x"), factor("y")], points, vec![column("q"), column("p")])
+}
+
+#[test]
+fn linear_model_has_normal_posterior() {
+    let (factors, points, results) = study();
+    let target = Target { quantity: 0, value: 2.4, tolerance: 0.12 };
+    let posterior = Posterior::of(&factors, &points, &results, &[target]).unwrap();
+    let [x, y] = posterior.parameters.as_slice() else { panic!("two parameters") };
+    // Mean 2.4/2, standard deviation √(0.12² + 0.05²)/2 = 0.065.
+    let deviation = 0.13 / 2.0;
+    assert!((x.median - 1.2).abs() < 0.02, "{x:?}");
+    for (found, z) in x.band.iter().zip([-1.645, 1.645]) {
+        assert!((found - (1.2 + z * deviation)).abs() < 0.025, "{x:?}");
+    }
+    assert!((x.deviation - deviation / (2.0 / 12.0_f64.sqrt())).abs() < 0.02, "{x:?}");
+    assert!(!x.is_undetermined() && y.is_undetermined(), "{y:?}");
+    assert!((y.deviation - 1.0).abs() < 0.03, "{y:?}");
+    // p = x + y keeps the uniform band of y: 1.2 + 0.1 to 1.2 + 1.9.
+    let p = &posterior.predictions[1];
+    assert!((p.band[0] - 1.3).abs() < 0.06 && (p.band[1] - 3.1).abs() < 0.06, "{p:?}");
+    assert!(p.prior[1] > 3.3 && p.explained > 0.99, "{p:?}");
+    assert_eq!(posterior.notes()[0], "not determined by the targets: y");
+}
+
+#[test]
+fn narrow_target_is_approached() {
+    let (factors, mut points, results) = study();
+    for (k, point) in points.iter_mut().enumerate() {
+        let x = point.values[0].unwrap();
+        // Without noise.
+        point.results[0] = [Some(2.0 * x), None, None];
+        point.case = format!("{k}");
+    }
+    let target = Target { quantity: 0, value: 1.0, tolerance: 1e-3 };
+    let posterior = Posterior::of(&factors, &points, &results, &[target]).unwrap();
+    let x = &posterior.parameters[0];
+    assert!((x.median - 0.5).abs() < 0.005, "{x:?}");
+    assert!(posterior.effective > 50.0, "{}", posterior.effective);
+}
+
+#[test]
+fn correlated_parameters_are_reported() {
+    let (factors, points, results) = study();
+    let target = Target { quantity: 1, value: 2.0, tolerance: 0.1 };
+    let posterior = Posterior::of(&factors, &points, &results, &[target]).unwrap();
+    let [(a, b, r)] = posterior.correlations.as_slice() else { panic!("one pair") };
+    assert!(a == "x" && b == "y" && *r < -0.9, "{r}");
+    // Random seeds are no parameters.
+    let mut seeded = factors.clone();
+    seeded[1].random = true;
+    let one = Posterior::of(&seeded, &points, &results, &[target_of_q()]).unwrap();
+    assert_eq!(one.parameters.len(), 1);
+    assert!(Posterior::of(&factors, &points, &results, &[]).is_none());
+    assert!(Posterior::of(&factors, &points[..4], &results, &[target_of_q()]).is_none());
+}
+
+fn target_of_q() -> Target {
+    Target { quantity: 0, value: 2.4, tolerance: 0.12 }
+}
