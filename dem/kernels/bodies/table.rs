@@ -122,10 +122,16 @@ impl Bodies {
     }
 
     #[inline]
+    pub fn mass(&self, k: usize) -> f64 {
+        let c = self.class(k);
+        c.mass.unwrap_or(c.density * (c.volume * self.scale[k].powi(3)))
+    }
+
+    #[inline]
     pub fn get(&self, k: usize) -> Body {
         let c = self.class(k);
         let scale = self.scale[k];
-        let mass = c.mass.unwrap_or(c.density * (c.volume * scale.powi(3)));
+        let mass = self.mass(k);
         Body {
             kind: c.kind,
             shape: c.shape as usize,

@@ -108,7 +108,7 @@ impl ForceWork {
             soil::act(&seen, self);
         }
         for (k, added) in self.added.iter().enumerate().filter(|(_, added)| **added > 0.0) {
-            let mass = seen.bodies.get(block.bodies[k] as usize).mass;
+            let mass = seen.bodies.mass(block.bodies[k] as usize);
             let all = xyz(sums[k].force()) + xyz(self.acting[k].force()) + seen.gravity * mass;
             self.acting[k].push(&(all * (-added / (mass + added))), &Vec3::zeros());
         }

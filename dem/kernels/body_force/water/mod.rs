@@ -103,7 +103,7 @@ impl Water {
         } + self.skin_drag * wet.area;
         let drag = |past: &Vec3| past * (0.5 * self.density * area * past.norm());
         // Velocity half a step ago, advanced to the present time.
-        let mass = seen.bodies.get(block.bodies[k] as usize).mass;
+        let mass = seen.bodies.mass(block.bodies[k] as usize);
         let others = xyz(seen.sums[k].force()) + seen.gravity * mass + lift + carried;
         let now = past - (others + drag(&past)) * (0.5 * seen.kick / (mass + added));
         let force = lift + drag(&now);
@@ -126,9 +126,12 @@ impl BodyForceModel for Water {
 fn wet_part(seen: &ForceInput<'_>, k: usize, level: f64, past: &Vec3, work: &mut ForceWork) -> (Wet, f64) {
     let members = seen.members;
     let radius = work.radius[k];
+    let kind = if members.rigid { members.kind[k] } else { BodyKind::Sphere };
+    if kind == BodyKind::Sphere && level >= radius {
+        return (submerged(radius), radius);
+    }
     let speed = past.norm();
     let along = if speed > 0.0 { past / speed } else { Vec3::x() };
-    let kind = if members.rigid { members.kind[k] } else { BodyKind::Sphere };
     let wet = match kind {
         BodyKind::Sphere => ball(radius, level, &along),
         BodyKind::Clump => {
@@ -156,6 +159,12 @@ fn wet_part(seen: &ForceInput<'_>, k: usize, level: f64, past: &Vec3, work: &mut
     (wet, radius)
 }
 
+/// Ball below the level: the same area from all sides.
+fn submerged(r: f64) -> Wet {
+    let circle = PI * r * r;
+    Wet { volume: 4.0 / 3.0 * circle * r, arm: Vec3::zeros(), area: 4.0 * circle, seen: circle }
+}
+
 /// Spherical cap (Bronstein & Semendjajew).
 fn ball(r: f64, level: f64, along: &Vec3) -> Wet {
     let h = (r + level).clamp(0.0, 2.0 * r);
@@ -168,13 +177,9 @@ fn ball(r: f64, level: f64, along: &Vec3) -> Wet {
     let s = (h - r) / r;
     let side = r * r * (0.5 * PI + libm::asin(s) + s * (1.0 - s * s).max(0.0).sqrt());
     let below = PI * if h < r { h * low } else { r * r };
-    let flat = libm::hypot(along.x, along.y);
-    Wet {
-        volume,
-        arm: Vec3::z() * arm,
-        area: 2.0 * PI * r * h,
-        seen: libm::hypot(side * flat, below * along.z),
-    }
+    let flat = along.x * along.x + along.y * along.y;
+    let seen = (side * side * flat + below * below * along.z * along.z).sqrt();
+    Wet { volume, arm: Vec3::z() * arm, area: 2.0 * PI * r * h, seen }
 }
 
 /// Member spheres, scaled to the clump's volume; areas of the volume-equivalent sphere.
