@@ -35,6 +35,7 @@ mod suite {
     mod mesh_round;
     mod meshed_sleeper;
     mod messages;
+    mod moving_load;
     mod mumps;
     mod observe;
     mod packings;

@@ -273,7 +273,8 @@ Side = Literal["x-", "x+", "y-", "y+", "z-", "z+"]
 # "pressure": Normal to faces.
 # "traction": On faces.
 # "point": Force.
-SolidLoadKind = Literal["pressure", "traction", "point"]
+# "moving": Forces that move along a line.
+SolidLoadKind = Literal["pressure", "traction", "point", "moving"]
 
 
 # An axis.
@@ -1990,6 +1991,9 @@ class Solid(TypedDict, total=False):
     # Reduced model under grains; default none.
     reduction: Reduction
 
+    # Boxes with another material than in the mesh; default none.
+    region: Sequence[SolidRegion]
+
     # Factor from file lengths to metres, displacements too; default 1; > 0 (0.001 for mm).
     scale: Float
 
@@ -2006,13 +2010,16 @@ class SolidLoad(TypedDict, total=False):
     # Point of the solid [m]; or `node`; with `"point"`.
     at: Quantities
 
+    # Distances behind the first axle, ascending from 0 [m]; default `[0]`; with `"moving"`.
+    axles: Quantities
+
     # Faces `[[element, face], …]`, numbered as SOLID186; or `faces_in`, `side`, `set`; with `"pressure"`, `"traction"`.
     faces: IntegerRows
 
     # Box `[low, high]` of face centres [m]; or `faces`.
     faces_in: Rows
 
-    # Force vector [N]; with `"point"`.
+    # Force vector, with `"moving"` of each axle [N]; with `"point"`, `"moving"`.
     force: Quantities
 
     # Time history; default constant.
@@ -2024,6 +2031,9 @@ class SolidLoad(TypedDict, total=False):
     # Node number; or `at`; with `"point"`.
     node: Integer
 
+    # Start and end of the line on the solid [m]; with `"moving"`.
+    path: Rows
+
     # Pressure, compression positive [Pa]; with `"pressure"`.
     pressure: Quantity
 
@@ -2032,6 +2042,15 @@ class SolidLoad(TypedDict, total=False):
 
     # Side of the bounding box; or `faces`.
     side: Side
+
+    # Length and width that spread the force [m]; default a point; with `"moving"`.
+    size: Quantities
+
+    # Speed along `path` [m/s]; > 0; with `"moving"`.
+    speed: Quantity
+
+    # Time at which the first axle enters [s]; default 0; with `"moving"`.
+    start: Quantity
 
     # Traction vector [Pa]; with `"traction"`.
     traction: Quantities
@@ -2113,6 +2132,16 @@ class SolidMaterial(_SolidMaterial, total=False):
 
     # Young's modulus [Pa]; > 0; not with `"modified_cam_clay"`.
     young: Quantity
+
+
+class SolidRegion(TypedDict, total=False):
+    """`[[solid.region]]`: elements with their centre in a box have another material."""
+
+    # Box `[low, high]` of element centres [m].
+    box: Required[Rows]
+
+    # Number of a `[[solid.material]]`.
+    material: Required[Integer]
 
 
 class Specimen(TypedDict, total=False):

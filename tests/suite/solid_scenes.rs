@@ -319,14 +319,15 @@ fn deflection_runs_along_with_the_axle() {
     let line = |start: &str| text.lines().find(|l| l.starts_with(start)).unwrap();
     let slow = text
         .replace(&format!("{}\n{}\n", line("dynamics"), line("rayleigh")), "quasi_static = {}\n")
-        .replace("solid_step = \"2 ms\"", "solid_step = \"20 ms\"")
-        .replace("history_interval = \"2 ms\"", "history_interval = \"10 ms\"");
+        .replace("solid_step = \"2 ms\"", "solid_step = \"5 ms\"")
+        .replace("history_interval = \"2 ms\"", "history_interval = \"5 ms\"");
     let scene = folder.write("slow.toml", &slow);
     run(&scene, &folder.join("slow"), &["output.vtk=false"]).good();
     let standing = trough(&Table::read(&folder.join("slow/history.csv")), "y6");
     let factor = six.1 / standing.1;
     println!("trough {:.3} mm, of a standing load {:.3} mm: {factor:.3}", 1e3 * six.1, 1e3 * standing.1);
-    assert!(factor > 1.0 && factor < 1.25, "{factor}");
+    // Half of the shear wave speed: inertia adds 6 % on an undamped half-space, damping takes as much.
+    assert!(factor > 0.95 && factor < 1.1, "{factor}");
 }
 
 #[test]

@@ -14,7 +14,7 @@ pub use material::{Cone, MaterialFault, MaterialModel, SolidMaterial};
 pub use mesh::{Axis, Block, Layer, Order};
 
 use super::history::History;
-use super::units::{Force, Length, Quantity, Stress};
+use super::units::{Force, Length, Quantity, Stress, Time, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;
@@ -59,6 +59,9 @@ pub struct Solid {
     /// Materials.
     #[serde(default)]
     pub material: Vec<SolidMaterial>,
+    /// Boxes with another material than in the mesh; default none.
+    #[serde(default)]
+    pub region: Vec<SolidRegion>,
     /// Whether gravity acts on the solid; default true.
     #[serde(default = "super::yes")]
     pub gravity: bool,
@@ -146,10 +149,31 @@ pub struct SolidLoad {
     pub node: Option<u32>,
     /// Point of the solid [m]; or `node`; with `"point"`.
     pub at: Option<[Quantity<Length>; 3]>,
-    /// Force vector [N]; with `"point"`.
+    /// Force vector, with `"moving"` of each axle [N]; with `"point"`, `"moving"`.
     pub force: Option<[Quantity<Force>; 3]>,
+    /// Start and end of the line on the solid [m]; with `"moving"`.
+    pub path: Option<[[Quantity<Length>; 3]; 2]>,
+    /// Speed along `path` [m/s]; > 0; with `"moving"`.
+    pub speed: Option<Quantity<Velocity>>,
+    /// Time at which the first axle enters [s]; default 0; with `"moving"`.
+    pub start: Option<Quantity<Time>>,
+    /// Distances behind the first axle, ascending from 0 [m]; default `[0]`; with `"moving"`.
+    pub axles: Option<Vec<Quantity<Length>>>,
+    /// Length and width that spread the force [m]; default a point; with `"moving"`.
+    pub size: Option<[Quantity<Length>; 2]>,
     /// Time history; default constant.
     pub history: Option<History>,
+}
+
+/// `[[solid.region]]`: elements with their centre in a box have another material.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SolidRegion {
+    /// Box `[low, high]` of element centres [m].
+    #[serde(rename = "box")]
+    pub bounds: [[Quantity<Length>; 3]; 2],
+    /// Number of a `[[solid.material]]`.
+    pub material: u32,
 }
 
 /// Kind of a load on the solid.
@@ -162,4 +186,6 @@ pub enum SolidLoadKind {
     Traction,
     /// Force.
     Point,
+    /// Forces that move along a line.
+    Moving,
 }

@@ -1,6 +1,7 @@
 //! Mesh of a solid: from files, or generated.
 
 use crate::scene::solid::{Axis, Block, Order, Solid};
+use crate::scene::units::vector;
 use crate::scene::{SceneError, Table};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -92,6 +93,7 @@ pub fn geometry(solid: &Table<Solid>) -> Result<Geometry, Failure> {
     if !solid.support.is_empty() && solid.constraints.is_none() && geometry.constraints.is_empty() {
         geometry.constraint_file = solid.scene_file().to_path_buf();
     }
+    assign_regions(solid, &mut geometry.mesh)?;
     match solid.order {
         Some(Order::Linear) => reorder(&mut geometry, Mesh::to_linear),
         Some(Order::Quadratic) => {
@@ -105,6 +107,31 @@ pub fn geometry(solid: &Table<Solid>) -> Result<Geometry, Failure> {
         None => {}
     }
     Ok(geometry)
+}
+
+/// Gives the elements of each region its material; later regions count.
+fn assign_regions(solid: &Table<Solid>, mesh: &mut Mesh) -> Result<(), ReadError> {
+    for region in solid.rows("region", &solid.region) {
+        let [low, high] = region.bounds.map(|corner| vector(&corner));
+        if (0..3).any(|d| low[d] >= high[d]) {
+            return Err(region.error("box", format!("{low:?} to {high:?}"), "low below high").into());
+        }
+        if solid.material.iter().all(|m| m.id != region.material) {
+            let ids: Vec<String> = solid.material.iter().map(|m| m.id.to_string()).collect();
+            let expected = format!("the `id` of a [[solid.material]]: {}", ids.join(", "));
+            return Err(region.error("material", region.material.to_string(), expected).into());
+        }
+        let is_inside = |mesh: &Mesh, e: usize| {
+            let centre = mesh.element_centre(e);
+            (0..3).all(|d| low[d] <= centre[d] && centre[d] <= high[d])
+        };
+        let inside: Vec<usize> = (0..mesh.element_count()).filter(|e| is_inside(mesh, *e)).collect();
+        if inside.is_empty() {
+            return Err(region.error("box", "no element", "the centre of at least one element").into());
+        }
+        inside.into_iter().for_each(|e| mesh.materials[e] = region.material);
+    }
+    Ok(())
 }
 
 /// Lengths in another stated unit need `scale`.

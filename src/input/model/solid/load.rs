@@ -3,6 +3,7 @@
 use super::common::time_function;
 use super::geometry::Geometry;
 use super::location::Locator;
+use super::moving::MovingForce;
 use super::selection;
 use crate::scene::history::TimeFunction;
 use crate::scene::solid::{SolidLoad, SolidLoadKind};
@@ -17,20 +18,27 @@ pub struct NodalLoad {
     pub faces: Vec<Face>,
     /// Centres of the faces, or the loaded point [m], and forces there [N].
     pub forces: Vec<([f64; 3], [f64; 3])>,
-    /// (degree of freedom, force [N]) pairs.
-    pub entries: Vec<(usize, f64)>,
+    pattern: Pattern,
     /// Load factor over time.
     pub function: TimeFunction,
+}
+
+enum Pattern {
+    /// (degree of freedom, force [N]) pairs.
+    Fixed(Vec<(usize, f64)>),
+    Moving(MovingForce),
 }
 
 impl NodalLoad {
     /// Adds the load at time `t` [s], shape `[3·nodes]`.
     pub fn add(&self, t: f64, load: &mut [f64]) {
         let factor = self.function.factor(t);
-        if factor != 0.0 {
-            for &(dof, value) in &self.entries {
-                load[dof] += factor * value;
-            }
+        if factor == 0.0 {
+            return;
+        }
+        match &self.pattern {
+            Pattern::Fixed(entries) => entries.iter().for_each(|(dof, value)| load[*dof] += factor * value),
+            Pattern::Moving(moving) => moving.add(t, factor, load),
         }
     }
 }
@@ -40,64 +48,96 @@ impl NodalLoad {
 /// # Errors
 /// Wrong keys, or no face.
 pub fn nodal_load(load: &Table<SolidLoad>, geometry: &Geometry) -> Result<NodalLoad, SceneError> {
-    use SolidLoadKind::{Point, Pressure, Traction};
     let mesh = &geometry.mesh;
     let function = time_function(load.optional("history", &load.history))?;
+    reject_other_keys(load)?;
     let mut pattern = vec![0.0; 3 * mesh.node_count()];
-    let (mut loaded, mut forces) = (Vec::new(), Vec::new());
+    let (mut faces, mut forces) = (Vec::new(), Vec::new());
     match load.kind {
         SolidLoadKind::Pressure | SolidLoadKind::Traction => {
-            let pressure = load.kind == SolidLoadKind::Pressure;
-            load.reject_without([("traction", pressure && load.traction.is_some())], &kinds(&[Traction]))?;
-            load.reject_without([("pressure", !pressure && load.pressure.is_some())], &kinds(&[Pressure]))?;
-            let of_points =
-                [("node", load.node.is_some()), ("at", load.at.is_some()), ("force", load.force.is_some())];
-            load.reject_without(of_points, &kinds(&[Point]))?;
-            let (list, set) = (load.faces.as_deref(), load.set.as_deref());
-            let faces = selection::faces(load, geometry, list, load.faces_in, load.side, set)?;
-            for face in &faces {
-                let before = sum(face, &pattern);
-                if pressure {
-                    let p = load.need("pressure", load.pressure, "a value for a pressure load")?.si;
-                    fem::loads::face_pressure(mesh, face, p, &mut pattern);
-                } else {
-                    let t = vector(&load.need("traction", load.traction, "a value for a traction load")?);
-                    fem::loads::face_traction(mesh, face, t, &mut pattern);
-                }
-                let after = sum(face, &pattern);
-                forces.push((face.centre(mesh), [0, 1, 2].map(|d| after[d] - before[d])));
-            }
-            loaded = faces;
+            faces = on_faces(load, geometry, &mut pattern, &mut forces)?;
         }
-        SolidLoadKind::Point => {
-            let of_faces = [
-                ("faces", load.faces.is_some()),
-                ("faces_in", load.faces_in.is_some()),
-                ("side", load.side.is_some()),
-                ("set", load.set.is_some()),
-            ];
-            load.reject_without(of_faces, &kinds(&[Pressure, Traction]))?;
-            load.reject_without([("pressure", load.pressure.is_some())], &kinds(&[Pressure]))?;
-            load.reject_without([("traction", load.traction.is_some())], &kinds(&[Traction]))?;
-            let force = vector(&load.need("force", load.force, "a value for a point load")?);
-            match (load.node, load.at) {
-                (Some(id), None) => {
-                    let node = selection::find_node(load, mesh, id)?;
-                    for d in 0..3 {
-                        pattern[3 * node + d] += force[d];
-                    }
-                    forces.push((mesh.coordinates[node], force));
-                }
-                (None, Some(at)) => {
-                    point_load(load, mesh, vector(&at), force, &mut pattern)?;
-                    forces.push((vector(&at), force));
-                }
-                (node, _) => return Err(load.choice(["node", "at"], node.is_some())),
-            }
+        SolidLoadKind::Point => forces.push(point(load, mesh, &mut pattern)?),
+        SolidLoadKind::Moving => {
+            let moving = MovingForce::new(load, mesh)?;
+            forces.extend(load.path.zip(load.force).map(|(path, force)| (vector(&path[0]), vector(&force))));
+            return Ok(NodalLoad { faces, forces, pattern: Pattern::Moving(moving), function });
         }
     }
     let entries = pattern.iter().enumerate().filter(|(_, v)| **v != 0.0).map(|(i, v)| (i, *v)).collect();
-    Ok(NodalLoad { faces: loaded, forces, entries, function })
+    Ok(NodalLoad { faces, forces, pattern: Pattern::Fixed(entries), function })
+}
+
+/// Each key belongs to some kinds.
+fn reject_other_keys(load: &Table<SolidLoad>) -> Result<(), SceneError> {
+    use SolidLoadKind::{Moving, Point, Pressure, Traction};
+    let given: [(&str, bool, &[SolidLoadKind]); 14] = [
+        ("faces", load.faces.is_some(), &[Pressure, Traction]),
+        ("faces_in", load.faces_in.is_some(), &[Pressure, Traction]),
+        ("side", load.side.is_some(), &[Pressure, Traction]),
+        ("set", load.set.is_some(), &[Pressure, Traction]),
+        ("pressure", load.pressure.is_some(), &[Pressure]),
+        ("traction", load.traction.is_some(), &[Traction]),
+        ("node", load.node.is_some(), &[Point]),
+        ("at", load.at.is_some(), &[Point]),
+        ("force", load.force.is_some(), &[Point, Moving]),
+        ("path", load.path.is_some(), &[Moving]),
+        ("speed", load.speed.is_some(), &[Moving]),
+        ("start", load.start.is_some(), &[Moving]),
+        ("axles", load.axles.is_some(), &[Moving]),
+        ("size", load.size.is_some(), &[Moving]),
+    ];
+    for (key, found, allowed) in given {
+        load.reject_without([(key, found && !allowed.contains(&load.kind))], &kinds(allowed))?;
+    }
+    Ok(())
+}
+
+fn on_faces(
+    load: &Table<SolidLoad>,
+    geometry: &Geometry,
+    pattern: &mut [f64],
+    forces: &mut Vec<([f64; 3], [f64; 3])>,
+) -> Result<Vec<Face>, SceneError> {
+    let mesh = &geometry.mesh;
+    let (list, set) = (load.faces.as_deref(), load.set.as_deref());
+    let faces = selection::faces(load, geometry, list, load.faces_in, load.side, set)?;
+    for face in &faces {
+        let before = sum(face, pattern);
+        if load.kind == SolidLoadKind::Pressure {
+            let p = load.need("pressure", load.pressure, "a value for a pressure load")?.si;
+            fem::loads::face_pressure(mesh, face, p, pattern);
+        } else {
+            let t = vector(&load.need("traction", load.traction, "a value for a traction load")?);
+            fem::loads::face_traction(mesh, face, t, pattern);
+        }
+        let after = sum(face, pattern);
+        forces.push((face.centre(mesh), [0, 1, 2].map(|d| after[d] - before[d])));
+    }
+    Ok(faces)
+}
+
+/// Returns the loaded point and the force.
+fn point(
+    load: &Table<SolidLoad>,
+    mesh: &Mesh,
+    pattern: &mut [f64],
+) -> Result<([f64; 3], [f64; 3]), SceneError> {
+    let force = vector(&load.need("force", load.force, "a value for a point load")?);
+    match (load.node, load.at) {
+        (Some(id), None) => {
+            let node = selection::find_node(load, mesh, id)?;
+            for d in 0..3 {
+                pattern[3 * node + d] += force[d];
+            }
+            Ok((mesh.coordinates[node], force))
+        }
+        (None, Some(at)) => {
+            point_load(load, mesh, vector(&at), force, pattern)?;
+            Ok((vector(&at), force))
+        }
+        (node, _) => Err(load.choice(["node", "at"], node.is_some())),
+    }
 }
 
 fn sum(face: &Face, pattern: &[f64]) -> [f64; 3] {

@@ -13,6 +13,7 @@ mod location;
 mod locking;
 mod material;
 mod motion;
+mod moving;
 mod selection;
 mod sleepers;
 
