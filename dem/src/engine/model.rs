@@ -111,6 +111,7 @@ impl Model {
         let given: Vec<WallInput> = input.all_walls().collect();
         let scarred = given.iter().any(|w| w.scarring.is_some());
         let mut walls = Walls::new(&given, input.triangles.len())?;
+        walls.float(&given, input.body_forces.iter().find_map(BodyForce::water), &input.gravity)?;
         let shells = Shells::new(&given, &walls)?;
         let laws = if dilated || !shells.pairs.is_empty() { Laws::with_edges } else { Laws::new };
         let laws = laws(&input.materials, &input.contacts);
@@ -135,6 +136,7 @@ impl Model {
         let partners = timestep::partners(&bodies, &input);
         let collision = collision::longest(&bodies, &input, &laws, &partners, expected, radii.1);
         let fluids = body_force::time_constant(&input.body_forces, &bodies, &input.gravity);
+        let fluids = fluids.min(walls.water_time());
         check::fluid_step(&input.time_step, fluids)?;
         let landing = timestep::landing(&bodies, &input, &laws, expected);
         let longest = rigid.min(landing).min(body_force::RESOLVED * fluids);

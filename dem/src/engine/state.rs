@@ -17,6 +17,7 @@ use crate::pairs::cross::Cross;
 use crate::pairs::groups::Groups;
 use crate::pairs::patches::PatchList;
 use crate::shape::plane::PlaneMotion;
+use crate::wall::hull::WaterLoad;
 use crate::wall::state::WallState;
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
@@ -242,6 +243,12 @@ impl State {
     /// Contact force on a wall [N] and moment about its centre [N m] in the last step.
     pub fn wall_force(&self, wall: usize) -> (Vec3, Vec3) {
         (self.walls[wall].force, self.walls[wall].moment)
+    }
+
+    /// Load of water and propulsion on a rigid-body wall at `time`; none if it does not float.
+    pub fn water_load(&self, model: &Model, wall: usize) -> Option<WaterLoad> {
+        let body = model.walls.walls[wall].body.as_ref()?;
+        body.water_load(&self.walls[wall], self.time, 0.5 * self.step_size.last)
     }
 
     /// Force of a servo-controlled wall compared with its target; none for other walls.

@@ -7,6 +7,7 @@ use super::state::WallState;
 use super::triangulated::{self, SLACK, Triangle};
 use crate::base::Vec3;
 use crate::base::error::{ModelError, Partner};
+use crate::body_force::Water;
 use crate::integrate::rotation;
 use crate::law::scarring::Scarring;
 use crate::shape::triangle::Region;
@@ -146,6 +147,34 @@ impl Walls {
             reach,
         });
         Ok(())
+    }
+
+    /// Lets water act on bodies that float.
+    ///
+    /// # Errors
+    /// Open surfaces, too many vertices.
+    pub(crate) fn float(
+        &mut self,
+        input: &[WallInput],
+        water: Option<&Water>,
+        gravity: &Vec3,
+    ) -> Result<(), ModelError> {
+        let Some(water) = water else { return Ok(()) };
+        for (index, given) in input.iter().enumerate() {
+            if let (Some(rigid), Some(surface)) = (&given.body, given.shape.triangulated())
+                && let Some(body) = &mut self.walls[index].body
+            {
+                let floats = body.float(rigid, surface, water, gravity);
+                floats.map_err(|problem| ModelError::Wall { wall: self.name(index), problem })?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Shortest time per radian of bodies in the water [s].
+    pub(crate) fn water_time(&self) -> f64 {
+        let bodies = self.walls.iter().filter_map(|w| w.body.as_ref());
+        bodies.map(Body::water_time).fold(f64::INFINITY, f64::min)
     }
 
     pub(crate) fn name(&self, wall: usize) -> String {
