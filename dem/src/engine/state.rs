@@ -225,6 +225,17 @@ impl State {
         self.walls[wall].orientation
     }
 
+    /// Roll, pitch and heading of a wall since the start, about x, y, z in this order [rad].
+    pub fn wall_angles(&self, wall: usize) -> Vec3 {
+        let q = self.walls[wall].orientation;
+        let sine = (2.0 * (q.w * q.j - q.k * q.i)).clamp(-1.0, 1.0);
+        Vec3::new(
+            libm::atan2(2.0 * (q.w * q.i + q.j * q.k), 1.0 - 2.0 * (q.i * q.i + q.j * q.j)),
+            libm::asin(sine),
+            libm::atan2(2.0 * (q.w * q.k + q.i * q.j), 1.0 - 2.0 * (q.j * q.j + q.k * q.k)),
+        )
+    }
+
     /// Current position of a wall point, initially `x` [m].
     pub fn wall_point(&self, model: &Model, wall: usize, x: &Vec3) -> Vec3 {
         self.walls[wall].to_world(&model.walls.walls[wall].centre, x)
