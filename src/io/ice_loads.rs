@@ -78,9 +78,11 @@ const POISSON: f64 = 0.3;
 /// Ship through level ice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ship {
-    /// Length, beam at the waterline and draught [m].
+    /// Length of the waterline [m].
     pub length: f64,
+    /// Beam at the waterline [m].
     pub beam: f64,
+    /// Draught [m].
     pub draught: f64,
     /// Angle φ of the stem with the horizontal [rad].
     pub stem_angle: f64,
@@ -92,8 +94,9 @@ pub struct Ship {
     pub friction: f64,
     /// Ice thickness [m].
     pub thickness: f64,
-    /// Flexural strength and Young's modulus of the ice [Pa].
+    /// Flexural strength of the ice [Pa].
     pub flexural_strength: f64,
+    /// Young's modulus of the ice [Pa].
     pub young: f64,
     /// Density of the ice [kg/m³].
     pub density: f64,

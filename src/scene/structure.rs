@@ -75,7 +75,7 @@ pub struct LevelIce {
     pub width: Quantity<Length>,
     /// Strength coefficient of crushing after ISO 19906 [Pa]; or `flexural_strength`; > 0.
     pub strength: Option<Quantity<Stress>>,
-    /// Flexural strength, after Ralston or Lindqvist [Pa]; or `strength`; > 0.
+    /// Flexural strength [Pa]; or `strength`; > 0.
     pub flexural_strength: Option<Quantity<Stress>>,
     /// Slope of the cone from the horizontal [rad]; > 0, < π/2; with `flexural_strength`, not `hull`.
     pub angle: Option<Quantity<Angle>>,
@@ -87,7 +87,7 @@ pub struct LevelIce {
     pub density: Option<Quantity<Density>>,
     /// Thickness of the ridden-up ice [m]; default `thickness`; ≥ 0; with `angle`.
     pub ride_up: Option<Quantity<Length>>,
-    /// Ship whose mean resistance is the reference; default none; with `flexural_strength`, not `angle`.
+    /// Ship, after Lindqvist; default none; with `flexural_strength`, not `angle`.
     pub hull: Option<HullForm>,
 }
 
@@ -99,9 +99,9 @@ pub struct HullForm {
     pub length: Quantity<Length>,
     /// Draught [m]; > 0.
     pub draught: Quantity<Length>,
-    /// Angle of the stem with the horizontal [rad]; > 0, < π/2.
+    /// Stem from the horizontal [rad]; > 0, < π/2.
     pub stem_angle: Quantity<Angle>,
-    /// Angle of the waterline at the bow with the centre plane [rad]; > 0, < π/2.
+    /// Waterline from the centre plane [rad]; > 0, < π/2.
     pub entrance_angle: Quantity<Angle>,
     /// Speed [m/s]; ≥ 0.
     pub speed: Quantity<Velocity>,

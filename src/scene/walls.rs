@@ -164,7 +164,7 @@ pub struct Body {
     pub hold: Vec<HeldMotion>,
     /// Spring–dashpot support; default none.
     pub mount: Option<Mount>,
-    /// Forces of the water; default none; with closed triangles, `[water]`.
+    /// Water forces; default none; with closed triangles, `[water]`.
     pub water: Option<BodyWater>,
     /// Thrust and rudder; default none; with `water`.
     pub propulsion: Option<Propulsion>,
@@ -176,17 +176,17 @@ pub struct Body {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodyWater {
-    /// Form drag coefficients along x, y, z; default `water.drag`; 0–100.
+    /// Form drag along x, y, z; default `water.drag`; 0–100.
     pub drag: Option<[f64; 3]>,
-    /// Drag coefficient of the wet surface; default `water.skin_drag`; 0–100.
+    /// Skin drag; default `water.skin_drag`; 0–100.
     pub skin_drag: Option<f64>,
-    /// Coefficients of the moments about x, y, z; default `water.drag_moment`; 0–100.
+    /// Moment coefficients; default `water.drag_moment`; 0–100.
     pub drag_moment: Option<[f64; 3]>,
-    /// Added mass over displaced, along x, y, z; default `water.added_mass`; 0–100.
+    /// Added over displaced mass; default `water.added_mass`; 0–100.
     pub added_mass: Option<[f64; 3]>,
-    /// Added inertia over the body's about x, y, z; default 0; 0–100.
+    /// Added over own inertia; default 0; 0–100.
     pub added_inertia: Option<[f64; 3]>,
-    /// Linear damping over critical: heave, about x, about y; default 0; 0–10.
+    /// Damping over critical: heave, about x, y; default 0; 0–10.
     pub damping_ratio: Option<[f64; 3]>,
 }
 
@@ -196,13 +196,13 @@ pub struct BodyWater {
 pub struct Propulsion {
     /// Thrust [N]; none above water.
     pub thrust: Quantity<Force>,
-    /// Position of the propeller at the start [m].
+    /// Propeller at the start [m].
     pub point: [Quantity<Length>; 3],
-    /// Direction of thrust at the start; default `[1, 0, 0]`.
+    /// Direction at the start; default `[1, 0, 0]`.
     pub direction: Option<[f64; 3]>,
-    /// Factors on the thrust `[[time, factor], …]`, linear between [s]; default 1.
+    /// Factors `[[time, factor], …]`, linear between [s]; default 1.
     pub history: Option<Vec<(Quantity<Time>, f64)>>,
-    /// Propeller diameter, for its race at the rudder [m]; default none; > 0; with `rudder`.
+    /// Propeller diameter, for its race [m]; default none; > 0; with `rudder`.
     pub diameter: Option<Quantity<Length>>,
     /// Rudder; default none; not with vertical `direction`.
     pub rudder: Option<Rudder>,
@@ -214,7 +214,7 @@ pub struct Propulsion {
 pub struct Rudder {
     /// Area [m²]; > 0.
     pub area: f64,
-    /// Position of its force at the start [m].
+    /// Position at the start [m].
     pub point: [Quantity<Length>; 3],
     /// Squared height over area; default 1.5; > 0.
     pub aspect_ratio: Option<f64>,

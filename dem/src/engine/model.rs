@@ -110,8 +110,7 @@ impl Model {
         let dilated = bodies.iter().any(|b| matches!(input.shapes[b.shape], Shape::Polyhedron(_)));
         let given: Vec<WallInput> = input.all_walls().collect();
         let scarred = given.iter().any(|w| w.scarring.is_some());
-        let mut walls = Walls::new(&given, input.triangles.len())?;
-        walls.float(&given, input.body_forces.iter().find_map(BodyForce::water), &input.gravity)?;
+        let mut walls = Walls::afloat(&given, input.triangles.len(), &input.body_forces, &input.gravity)?;
         let shells = Shells::new(&given, &walls)?;
         let laws = if dilated || !shells.pairs.is_empty() { Laws::with_edges } else { Laws::new };
         let laws = laws(&input.materials, &input.contacts);
@@ -135,8 +134,7 @@ impl Model {
         let rigid = rigid.min(timestep::shells(&mut walls, &mut limit, &shells, &laws));
         let partners = timestep::partners(&bodies, &input);
         let collision = collision::longest(&bodies, &input, &laws, &partners, expected, radii.1);
-        let fluids = body_force::time_constant(&input.body_forces, &bodies, &input.gravity);
-        let fluids = fluids.min(walls.water_time());
+        let fluids = timestep::fluids(&input, &bodies, &walls);
         check::fluid_step(&input.time_step, fluids)?;
         let landing = timestep::landing(&bodies, &input, &laws, expected);
         let longest = rigid.min(landing).min(body_force::RESOLVED * fluids);

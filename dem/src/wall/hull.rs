@@ -1,12 +1,12 @@
 //! Floating rigid bodies: closed triangles in water, with thrust and rudder.
 //!
-//! Pressure is hydrostatic, plus that of the undisturbed wave (Froude–Krylov). The surface is the mean plane of
+//! Pressure is hydrostatic, plus the undisturbed wave's (Froude–Krylov). The surface is the mean plane of
 //! the wave over the bounds of the body. Rudder: Fujii & Tuda, J. Soc. Nav. Archit. Japan 110, 1961; race of the
 //! propeller: momentum theory (Rankine 1865).
 //!
 //! Limits: no radiation memory, diffraction, lift of the hull or Munk moment.
 //!
-//! Theory manual: equations (6.31a) to (6.31d) of `docs/theory/track.md`.
+//! Theory manual: equations (6.31a) to (6.31c) of `docs/theory/track.md`.
 
 use super::body::Body;
 use super::enclosed::enclosed;
@@ -15,6 +15,7 @@ use super::servo::interpolated;
 use super::state::WallState;
 use crate::base::Vec3;
 use crate::body_force::{Skin, Water};
+use crate::integrate::rotation;
 use nalgebra::{Matrix3, UnitQuaternion};
 use std::f64::consts::PI;
 
@@ -127,7 +128,7 @@ impl Hull {
     fn measure(&mut self, mass: f64) {
         let (density, g) = (self.water.density, self.gravity.norm());
         let below = |turn: &Vec3, level: f64| {
-            let turn = UnitQuaternion::from_scaled_axis(*turn);
+            let turn = rotation::by(turn);
             let wet = self.skin.surface_below(&turn.inverse_transform_vector(&Vec3::z()), level, &Vec3::x());
             (density * wet.volume, turn * wet.arm)
         };

@@ -7,7 +7,7 @@ use super::state::WallState;
 use super::triangulated::{self, SLACK, Triangle};
 use crate::base::Vec3;
 use crate::base::error::{ModelError, Partner};
-use crate::body_force::Water;
+use crate::body_force::{BodyForce, Water};
 use crate::integrate::rotation;
 use crate::law::scarring::Scarring;
 use crate::shape::triangle::Region;
@@ -149,17 +149,24 @@ impl Walls {
         Ok(())
     }
 
-    /// Lets water act on bodies that float.
+    /// As [`Walls::new`], with bodies that float in the water.
     ///
     /// # Errors
-    /// Open surfaces, too many vertices.
-    pub(crate) fn float(
-        &mut self,
+    /// Also open surfaces, too many vertices.
+    pub(crate) fn afloat(
         input: &[WallInput],
-        water: Option<&Water>,
+        plain: usize,
+        forces: &[BodyForce],
         gravity: &Vec3,
-    ) -> Result<(), ModelError> {
-        let Some(water) = water else { return Ok(()) };
+    ) -> Result<Walls, ModelError> {
+        let mut walls = Walls::new(input, plain)?;
+        if let Some(water) = forces.iter().find_map(BodyForce::water) {
+            walls.float(input, water, gravity)?;
+        }
+        Ok(walls)
+    }
+
+    fn float(&mut self, input: &[WallInput], water: &Water, gravity: &Vec3) -> Result<(), ModelError> {
         for (index, given) in input.iter().enumerate() {
             if let (Some(rigid), Some(surface)) = (&given.body, given.shape.triangulated())
                 && let Some(body) = &mut self.walls[index].body

@@ -74,6 +74,7 @@ fn draught_matches_archimedes() {
         let mut run = afloat(barge(1.0, lift, damped), still(DENSITY), 5e-3);
         run.until(60.0);
         let draught = DRAUGHT - lift - run.state.wall_offset(0).z;
+        println!("draught off by {:.1e} m", draught - DRAUGHT);
         assert!((draught - DRAUGHT).abs() < 1e-6, "{draught}");
         assert!(roll(&run).abs() < 1e-9);
     }
@@ -87,6 +88,7 @@ fn heave_period_matches_closed_form() {
         let mut run = afloat(barge(1.0, 0.01, water), still(DENSITY), dt);
         let found = period(&mut run, dt, 40.0, |run| run.state.wall_offset(0).z + 0.01);
         let exact = TAU * (MASS * (1.0 + added) / (DENSITY * G * LENGTH * BEAM)).sqrt();
+        println!("heave period off by {:.1e}", found / exact - 1.0);
         // Added mass follows the wet volume: 0.01/1.2 at most.
         assert!((found / exact - 1.0).abs() < 1e-4, "{found} s, expected {exact} s");
     }
@@ -122,6 +124,7 @@ fn roll_period_matches_closed_form() {
         let dt = 2e-3;
         let mut run = afloat((shape, start), still(DENSITY), dt);
         let found = period(&mut run, dt, 8.0 * exact, roll);
+        println!("roll period off by {:.1e}", found / exact - 1.0);
         assert!((found / exact - 1.0).abs() < 1e-3, "{found} s, expected {exact} s");
     }
 }
@@ -145,6 +148,7 @@ fn unstable_barge_lolls() {
         }
         let found = last[0] / last[1];
         let exact = if gm < 0.0 { (-2.0 * gm / bm).sqrt().atan() } else { 0.0 };
+        println!("loll {found:.5} rad of {exact:.5} rad");
         assert!((found.abs() - exact).abs() < 0.01 * exact.max(0.1), "{found} rad, expected {exact} rad");
     }
 }
@@ -228,6 +232,7 @@ fn thrust_balances_drag() {
     assert!((found / early - 1.0).abs() < 1e-3, "{found} m/s, expected {early} m/s");
     run.until(12.0 * time);
     let speed = run.state.wall_velocity(0).0.x + 0.7;
+    println!("speed off by {:.1e}", speed / exact - 1.0);
     assert!((speed / exact - 1.0).abs() < 1e-6, "{speed} m/s, expected {exact} m/s");
     let load = run.state.water_load(&run.model, 0).expect("a body in water");
     assert_eq!(load.thrust, [thrust; 2]);
@@ -303,6 +308,7 @@ fn yaw_rate_balances_rudder() {
         let middle = 0.5 * (low + high);
         if turn(middle) > brake(middle) { low = middle } else { high = middle }
     }
+    println!("yaw rate off by {:.1e}", rate / low - 1.0);
     assert!((rate / low - 1.0).abs() < 1e-3, "{rate} rad/s, expected {low} rad/s");
 }
 
