@@ -464,29 +464,29 @@ class Body(TypedDict, total=False):
     # Initial velocity [m/s]; default at rest.
     velocity: Quantities
 
-    # Forces of the water; default none; with closed triangles, `[water]`.
+    # Water forces; default none; with closed triangles, `[water]`.
     water: BodyWater
 
 
 class BodyWater(TypedDict, total=False):
     """Water on a body of triangles: lift, wave forces, drag, added mass. Axes are x, y, z at the start and turn with the body."""
 
-    # Added inertia over the body's about x, y, z; default 0; 0–100.
+    # Added over own inertia; default 0; 0–100.
     added_inertia: Floats
 
-    # Added mass over displaced, along x, y, z; default `water.added_mass`; 0–100.
+    # Added over displaced mass; default `water.added_mass`; 0–100.
     added_mass: Floats
 
-    # Linear damping over critical: heave, about x, about y; default 0; 0–10.
+    # Damping over critical: heave, about x, y; default 0; 0–10.
     damping_ratio: Floats
 
-    # Form drag coefficients along x, y, z; default `water.drag`; 0–100.
+    # Form drag along x, y, z; default `water.drag`; 0–100.
     drag: Floats
 
-    # Coefficients of the moments about x, y, z; default `water.drag_moment`; 0–100.
+    # Moment coefficients; default `water.drag_moment`; 0–100.
     drag_moment: Floats
 
-    # Drag coefficient of the wet surface; default `water.skin_drag`; 0–100.
+    # Skin drag; default `water.skin_drag`; 0–100.
     skin_drag: Float
 
 
@@ -1175,7 +1175,7 @@ class HullForm(TypedDict, total=False):
     # Draught [m]; > 0.
     draught: Required[Quantity]
 
-    # Angle of the waterline at the bow with the centre plane [rad]; > 0, < π/2.
+    # Waterline from the centre plane [rad]; > 0, < π/2.
     entrance_angle: Required[Quantity]
 
     # Length of the waterline [m]; > 0.
@@ -1184,7 +1184,7 @@ class HullForm(TypedDict, total=False):
     # Speed [m/s]; ≥ 0.
     speed: Required[Quantity]
 
-    # Angle of the stem with the horizontal [rad]; > 0, < π/2.
+    # Stem from the horizontal [rad]; > 0, < π/2.
     stem_angle: Required[Quantity]
 
     # Young's modulus of the ice [Pa]; > 0.
@@ -1299,13 +1299,13 @@ class LevelIce(TypedDict, total=False):
     # Density of the ice [kg/m³]; > 0; with `flexural_strength`.
     density: Quantity
 
-    # Flexural strength, after Ralston or Lindqvist [Pa]; or `strength`; > 0.
+    # Flexural strength [Pa]; or `strength`; > 0.
     flexural_strength: Quantity
 
     # Friction of ice on cone or hull; ≥ 0; with `flexural_strength`.
     friction: Float
 
-    # Ship whose mean resistance is the reference; default none; with `flexural_strength`, not `angle`.
+    # Ship, after Lindqvist; default none; with `flexural_strength`, not `angle`.
     hull: HullForm
 
     # Thickness of the ridden-up ice [m]; default `thickness`; ≥ 0; with `angle`.
@@ -1618,16 +1618,16 @@ class Probe(TypedDict, total=False):
 class Propulsion(TypedDict, total=False):
     """Prescribed thrust, and a rudder."""
 
-    # Propeller diameter, for its race at the rudder [m]; default none; > 0; with `rudder`.
+    # Propeller diameter, for its race [m]; default none; > 0; with `rudder`.
     diameter: Quantity
 
-    # Direction of thrust at the start; default `[1, 0, 0]`.
+    # Direction at the start; default `[1, 0, 0]`.
     direction: Floats
 
-    # Factors on the thrust `[[time, factor], …]`, linear between [s]; default 1.
+    # Factors `[[time, factor], …]`, linear between [s]; default 1.
     history: Rows
 
-    # Position of the propeller at the start [m].
+    # Propeller at the start [m].
     point: Required[Quantities]
 
     # Rudder; default none; not with vertical `direction`.
@@ -1792,7 +1792,7 @@ class Rudder(TypedDict, total=False):
     # Angles to port `[[time, angle], …]`, linear between [s, rad]; −π/2 to π/2.
     history: Required[Rows]
 
-    # Position of its force at the start [m].
+    # Position at the start [m].
     point: Required[Quantities]
 
 
