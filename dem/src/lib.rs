@@ -43,5 +43,8 @@ pub use names::Names;
 pub use shape::Shape;
 pub use state::State;
 pub use step::{find_contacts, find_deep_contacts, step};
-pub use wall::{Motion, Mount, Oscillation, RigidBody, Servo, TriangleSurface, WallInput, WallShape};
+pub use wall::{
+    BodyWater, Motion, Mount, Oscillation, Propulsion, RigidBody, Rudder, Servo, TriangleSurface, WallInput,
+    WallShape, WaterLoad,
+};
 pub use work::Work;

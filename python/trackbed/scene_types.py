@@ -453,6 +453,9 @@ class Body(TypedDict, total=False):
     # Spring–dashpot support; default none.
     mount: Mount
 
+    # Thrust and rudder; default none; with `water`.
+    propulsion: Propulsion
+
     # Corner and edge radius against walls [m]; default smallest side/50 or less; > 0; with triangles.
     rounding: Quantity
 
@@ -461,6 +464,31 @@ class Body(TypedDict, total=False):
 
     # Initial velocity [m/s]; default at rest.
     velocity: Quantities
+
+    # Water forces; default none; with closed triangles, `[water]`.
+    water: BodyWater
+
+
+class BodyWater(TypedDict, total=False):
+    """Water on a body of triangles: lift, wave forces, drag, added mass. Axes are x, y, z at the start and turn with the body."""
+
+    # Added over own inertia; default 0; 0–100.
+    added_inertia: Floats
+
+    # Added over displaced mass; default `water.added_mass`; 0–100.
+    added_mass: Floats
+
+    # Damping over critical: heave, about x, y; default 0; 0–10.
+    damping_ratio: Floats
+
+    # Form drag along x, y, z; default `water.drag`; 0–100.
+    drag: Floats
+
+    # Moment coefficients; default `water.drag_moment`; 0–100.
+    drag_moment: Floats
+
+    # Skin drag; default `water.skin_drag`; 0–100.
+    skin_drag: Float
 
 
 class BondTable(TypedDict, total=False):
@@ -1142,6 +1170,28 @@ class History(TypedDict, total=False):
     start: Quantity
 
 
+class HullForm(TypedDict, total=False):
+    """Ship of beam `width` in level ice, for its resistance after Lindqvist (1989)."""
+
+    # Draught [m]; > 0.
+    draught: Required[Quantity]
+
+    # Waterline from the centre plane [rad]; > 0, < π/2.
+    entrance_angle: Required[Quantity]
+
+    # Length of the waterline [m]; > 0.
+    length: Required[Quantity]
+
+    # Speed [m/s]; ≥ 0.
+    speed: Required[Quantity]
+
+    # Stem from the horizontal [rad]; > 0, < π/2.
+    stem_angle: Required[Quantity]
+
+    # Young's modulus of the ice [Pa]; > 0.
+    young: Required[Quantity]
+
+
 class InitialStress(TypedDict, total=False):
     """`[solid.initial_stress]`: stress that the solid has before the run."""
 
@@ -1242,21 +1292,24 @@ class Layer(TypedDict, total=False):
 
 
 class LevelIce(TypedDict, total=False):
-    """Level ice: crushing with `strength`, bending on a cone with `flexural_strength`."""
+    """Level ice: crushing with `strength`, bending on a cone with `flexural_strength`, or on a ship with `hull` too."""
 
-    # Slope of the cone from the horizontal [rad]; > 0, < π/2; with `flexural_strength`.
+    # Slope of the cone from the horizontal [rad]; > 0, < π/2; with `flexural_strength`, not `hull`.
     angle: Quantity
 
     # Density of the ice [kg/m³]; > 0; with `flexural_strength`.
     density: Quantity
 
-    # Flexural strength, for bending after Ralston [Pa]; or `strength`; > 0.
+    # Flexural strength [Pa]; or `strength`; > 0.
     flexural_strength: Quantity
 
-    # Friction of ice on the cone; ≥ 0; with `flexural_strength`.
+    # Friction of ice on cone or hull; ≥ 0; with `flexural_strength`.
     friction: Float
 
-    # Thickness of the ridden-up ice [m]; default `thickness`; ≥ 0; with `flexural_strength`.
+    # Ship, after Lindqvist; default none; with `flexural_strength`, not `angle`.
+    hull: HullForm
+
+    # Thickness of the ridden-up ice [m]; default `thickness`; ≥ 0; with `angle`.
     ride_up: Quantity
 
     # Strength coefficient of crushing after ISO 19906 [Pa]; or `flexural_strength`; > 0.
@@ -1265,7 +1318,7 @@ class LevelIce(TypedDict, total=False):
     # Ice thickness [m]; > 0.
     thickness: Required[Quantity]
 
-    # Width at the top of the cone [m]; ≥ 0, < `width`; with `flexural_strength`.
+    # Width at the top of the cone [m]; ≥ 0, < `width`; with `angle`.
     top_width: Quantity
 
     # Width at the waterline [m]; > 0.
@@ -1563,6 +1616,28 @@ class Probe(TypedDict, total=False):
     region: Rows
 
 
+class Propulsion(TypedDict, total=False):
+    """Prescribed thrust, and a rudder."""
+
+    # Propeller diameter, for its race [m]; default none; > 0; with `rudder`.
+    diameter: Quantity
+
+    # Direction at the start; default `[1, 0, 0]`.
+    direction: Floats
+
+    # Factors `[[time, factor], …]`, linear between [s]; default 1.
+    history: Rows
+
+    # Propeller at the start [m].
+    point: Required[Quantities]
+
+    # Rudder; default none; not with vertical `direction`.
+    rudder: Rudder
+
+    # Thrust [N]; none above water.
+    thrust: Required[Quantity]
+
+
 class Pulses(TypedDict, total=False):
     """Haversines on top of the force of a servo: force · (1 + (peak − 1) (1 − cos 2πf(t − start))/2)."""
 
@@ -1704,6 +1779,22 @@ class Region(TypedDict, total=False):
 
     # File of a closed surface, or mesh; or `box`.
     surface: File
+
+
+class Rudder(TypedDict, total=False):
+    """Rudder with the normal force of Fujii & Tuda (1961), without stall."""
+
+    # Area [m²]; > 0.
+    area: Required[Float]
+
+    # Squared height over area; default 1.5; > 0.
+    aspect_ratio: Float
+
+    # Angles to port `[[time, angle], …]`, linear between [s, rad]; −π/2 to π/2.
+    history: Required[Rows]
+
+    # Position at the start [m].
+    point: Required[Quantities]
 
 
 class Runout(TypedDict, total=False):

@@ -231,6 +231,13 @@ pub mod history {
         WALL_MOMENT: Vector "<wall>_moment" "N m" "moment of that force about the centre of the wall";
         WALL_TARGET: Scalar "<wall>_target" "N" "target force of a servo-controlled wall, 0 under displacement control";
         WALL_DISPLACEMENT: Vector "<wall>_displacement" "m" "displacement of the centre of the wall";
+        WALL_VELOCITY: Vector "<wall>_velocity" "m/s" "velocity of the centre of a floating wall";
+        WALL_ROTATION: Vector "<wall>_rotation" "rad" "roll, pitch, heading of a floating wall since the start";
+        WALL_WATER: Vector "<wall>_water" "N" "force of the water on a floating wall, without thrust, rudder, added mass";
+        WALL_WATER_MOMENT: Vector "<wall>_water_moment" "N m" "moment of that force about the centre of the wall";
+        WALL_THRUST: Scalar "<wall>_thrust" "N" "thrust on a floating wall";
+        WALL_RUDDER: Vector "<wall>_rudder" "N" "force on the rudder of a floating wall";
+        WALL_RUDDER_ANGLE: Scalar "<wall>_rudder_angle" "rad" "rudder angle, positive to port";
         GRAINS_PRESENT: Scalar "grains_present" "" "number of grains in the model";
         MASS_PRESENT: Scalar "mass_present" "kg" "mass of the grains in the model";
         GRAINS_IN: Scalar "grains_in" "" "number of grains inserted since the start";

@@ -1,4 +1,5 @@
-//! Loads of level ice: ISO 19906:2010, A.8.2.4.3.3 (crushing), A.8.2.4.4.2 (cones, Ralston 1977).
+//! Loads of level ice: ISO 19906:2010, A.8.2.4.3.3 (crushing), A.8.2.4.4.2 (cones, Ralston 1977); ships: G. Lindqvist,
+//! A straightforward method for calculation of ice resistance of ships, POAC 1989.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -70,6 +71,71 @@ impl Cone {
     }
 }
 
+/// Sea water [kg/m³], and Poisson's ratio of ice, of [`Ship`].
+const SEA_WATER: f64 = 1025.0;
+const POISSON: f64 = 0.3;
+
+/// Ship through level ice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ship {
+    /// Length of the waterline [m].
+    pub length: f64,
+    /// Beam at the waterline [m].
+    pub beam: f64,
+    /// Draught [m].
+    pub draught: f64,
+    /// Angle φ of the stem with the horizontal [rad].
+    pub stem_angle: f64,
+    /// Entrance angle α of the waterline, from the centre plane [rad].
+    pub entrance_angle: f64,
+    /// Speed [m/s].
+    pub speed: f64,
+    /// Friction of ice on the hull.
+    pub friction: f64,
+    /// Ice thickness [m].
+    pub thickness: f64,
+    /// Flexural strength of the ice [Pa].
+    pub flexural_strength: f64,
+    /// Young's modulus of the ice [Pa].
+    pub young: f64,
+    /// Density of the ice [kg/m³].
+    pub density: f64,
+}
+
+impl Ship {
+    /// Returns the resistance of crushing, of bending and of submersion [N] after Lindqvist, with speed.
+    pub fn resistance(&self) -> [f64; 3] {
+        let &Ship { length, beam, draught, thickness, friction: mu, .. } = self;
+        let (sin, cos) = libm::sincos(self.stem_angle);
+        let (sin_entrance, cos_entrance) = libm::sincos(self.entrance_angle);
+        let (stem, entrance) = (sin / cos, sin_entrance / cos_entrance);
+        let tan_normal = stem / sin_entrance;
+        let cos_normal = 1.0 / libm::hypot(1.0, tan_normal);
+        let crushing = 0.5 * self.flexural_strength * thickness * thickness * (stem + mu * cos / cos_normal)
+            / (1.0 - mu * sin / cos_normal);
+        let foundation = 12.0 * (1.0 - POISSON * POISSON) * GRAVITY * SEA_WATER;
+        let bending = 27.0 / 64.0 * self.flexural_strength * beam * thickness * thickness.sqrt()
+            / (self.young / foundation).sqrt()
+            * (tan_normal + mu * cos / (cos_normal * sin_entrance))
+            * (1.0 + 1.0 / cos_normal);
+        let slope = libm::hypot(1.0 / sin, 1.0 / entrance);
+        let rubbed =
+            0.7 * length - draught / stem - beam / (4.0 * entrance) + draught * cos * cos_normal * slope;
+        let lost = draught * (beam + draught) / (beam + 2.0 * draught);
+        let submersion = (SEA_WATER - self.density) * GRAVITY * thickness * beam * (lost + mu * rubbed);
+        let break_up = 1.0 + 1.4 * self.speed / (GRAVITY * thickness).sqrt();
+        let sliding = 1.0 + 9.4 * self.speed / (GRAVITY * length).sqrt();
+        [crushing * break_up, bending * break_up, submersion * sliding]
+    }
+
+    /// Whether the friction is small enough for the stem to crush the ice downwards.
+    pub fn slides(&self) -> bool {
+        let (sin, cos) = libm::sincos(self.stem_angle);
+        let slope = libm::hypot(1.0, sin / cos / libm::sin(self.entrance_angle));
+        self.friction * sin * slope < 1.0
+    }
+}
+
 /// Complete elliptic integrals of first and second kind of modulus `k`, by the arithmetic-geometric mean.
 fn elliptic(k: f64) -> [f64; 2] {
     let (mut a, mut b) = (1.0, (1.0 - k * k).sqrt());
@@ -104,6 +170,33 @@ mod tests {
         ] {
             close(crushing(width, thickness, strength), load, 1e-9);
         }
+    }
+
+    /// By hand, with tan ψ = 1.15470, cos ψ = 0.654654: crushing 250,000 · 0.70964/0.92362, bending 4,218,750/134.961 · 1.41928 · 2.52753,
+    /// submersion 24,525 · (5.55882 + 4.57154); speed factors of 2 m/s.
+    #[test]
+    fn resistance_matches_lindqvist() {
+        let ship = Ship {
+            length: 80.0,
+            beam: 20.0,
+            draught: 7.0,
+            stem_angle: 30_f64.to_radians(),
+            entrance_angle: 30_f64.to_radians(),
+            speed: 0.0,
+            friction: 0.1,
+            thickness: 1.0,
+            flexural_strength: 5e5,
+            young: 2e9,
+            density: 900.0,
+        };
+        let still = [192_080.0, 112_134.0, 248_447.0];
+        for (speed, factors) in [(0.0, [1.0; 3]), (2.0, [1.893_97, 1.893_97, 1.671_09])] {
+            let found = Ship { speed, ..ship }.resistance();
+            for (k, found) in found.into_iter().enumerate() {
+                close(found, still[k] * factors[k], 2e-5);
+            }
+        }
+        assert!(ship.slides() && !Ship { friction: 1.4, ..ship }.slides());
     }
 
     /// Breaking and ride-up by an independent program; the first row is the test case of IEC 61400-3 (IceFloe).

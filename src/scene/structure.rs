@@ -1,6 +1,6 @@
 //! Scene tables of structures with recorded loads.
 
-use super::units::{Angle, Density, Force, Length, Quantity, Stress, Time};
+use super::units::{Angle, Density, Force, Length, Quantity, Stress, Time, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -65,7 +65,7 @@ pub enum PeakLaw {
     Gumbel,
 }
 
-/// Level ice: crushing with `strength`, bending on a cone with `flexural_strength`.
+/// Level ice: crushing with `strength`, bending on a cone with `flexural_strength`, or on a ship with `hull` too.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LevelIce {
@@ -75,16 +75,36 @@ pub struct LevelIce {
     pub width: Quantity<Length>,
     /// Strength coefficient of crushing after ISO 19906 [Pa]; or `flexural_strength`; > 0.
     pub strength: Option<Quantity<Stress>>,
-    /// Flexural strength, for bending after Ralston [Pa]; or `strength`; > 0.
+    /// Flexural strength [Pa]; or `strength`; > 0.
     pub flexural_strength: Option<Quantity<Stress>>,
-    /// Slope of the cone from the horizontal [rad]; > 0, < π/2; with `flexural_strength`.
+    /// Slope of the cone from the horizontal [rad]; > 0, < π/2; with `flexural_strength`, not `hull`.
     pub angle: Option<Quantity<Angle>>,
-    /// Width at the top of the cone [m]; ≥ 0, < `width`; with `flexural_strength`.
+    /// Width at the top of the cone [m]; ≥ 0, < `width`; with `angle`.
     pub top_width: Option<Quantity<Length>>,
-    /// Friction of ice on the cone; ≥ 0; with `flexural_strength`.
+    /// Friction of ice on cone or hull; ≥ 0; with `flexural_strength`.
     pub friction: Option<f64>,
     /// Density of the ice [kg/m³]; > 0; with `flexural_strength`.
     pub density: Option<Quantity<Density>>,
-    /// Thickness of the ridden-up ice [m]; default `thickness`; ≥ 0; with `flexural_strength`.
+    /// Thickness of the ridden-up ice [m]; default `thickness`; ≥ 0; with `angle`.
     pub ride_up: Option<Quantity<Length>>,
+    /// Ship, after Lindqvist; default none; with `flexural_strength`, not `angle`.
+    pub hull: Option<HullForm>,
+}
+
+/// Ship of beam `width` in level ice, for its resistance after Lindqvist (1989).
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HullForm {
+    /// Length of the waterline [m]; > 0.
+    pub length: Quantity<Length>,
+    /// Draught [m]; > 0.
+    pub draught: Quantity<Length>,
+    /// Stem from the horizontal [rad]; > 0, < π/2.
+    pub stem_angle: Quantity<Angle>,
+    /// Waterline from the centre plane [rad]; > 0, < π/2.
+    pub entrance_angle: Quantity<Angle>,
+    /// Speed [m/s]; ≥ 0.
+    pub speed: Quantity<Velocity>,
+    /// Young's modulus of the ice [Pa]; > 0.
+    pub young: Quantity<Stress>,
 }

@@ -164,8 +164,62 @@ pub struct Body {
     pub hold: Vec<HeldMotion>,
     /// Spring–dashpot support; default none.
     pub mount: Option<Mount>,
+    /// Water forces; default none; with closed triangles, `[water]`.
+    pub water: Option<BodyWater>,
+    /// Thrust and rudder; default none; with `water`.
+    pub propulsion: Option<Propulsion>,
     /// Corner and edge radius against walls [m]; default smallest side/50 or less; > 0; with triangles.
     pub rounding: Option<Quantity<Length>>,
+}
+
+/// Water on a body of triangles: lift, wave forces, drag, added mass. Axes are x, y, z at the start and turn with the body.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BodyWater {
+    /// Form drag along x, y, z; default `water.drag`; 0–100.
+    pub drag: Option<[f64; 3]>,
+    /// Skin drag; default `water.skin_drag`; 0–100.
+    pub skin_drag: Option<f64>,
+    /// Moment coefficients; default `water.drag_moment`; 0–100.
+    pub drag_moment: Option<[f64; 3]>,
+    /// Added over displaced mass; default `water.added_mass`; 0–100.
+    pub added_mass: Option<[f64; 3]>,
+    /// Added over own inertia; default 0; 0–100.
+    pub added_inertia: Option<[f64; 3]>,
+    /// Damping over critical: heave, about x, y; default 0; 0–10.
+    pub damping_ratio: Option<[f64; 3]>,
+}
+
+/// Prescribed thrust, and a rudder.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Propulsion {
+    /// Thrust [N]; none above water.
+    pub thrust: Quantity<Force>,
+    /// Propeller at the start [m].
+    pub point: [Quantity<Length>; 3],
+    /// Direction at the start; default `[1, 0, 0]`.
+    pub direction: Option<[f64; 3]>,
+    /// Factors `[[time, factor], …]`, linear between [s]; default 1.
+    pub history: Option<Vec<(Quantity<Time>, f64)>>,
+    /// Propeller diameter, for its race [m]; default none; > 0; with `rudder`.
+    pub diameter: Option<Quantity<Length>>,
+    /// Rudder; default none; not with vertical `direction`.
+    pub rudder: Option<Rudder>,
+}
+
+/// Rudder with the normal force of Fujii & Tuda (1961), without stall.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rudder {
+    /// Area [m²]; > 0.
+    pub area: f64,
+    /// Position at the start [m].
+    pub point: [Quantity<Length>; 3],
+    /// Squared height over area; default 1.5; > 0.
+    pub aspect_ratio: Option<f64>,
+    /// Angles to port `[[time, angle], …]`, linear between [s, rad]; −π/2 to π/2.
+    pub history: Vec<(Quantity<Time>, Quantity<Angle>)>,
 }
 
 /// Springs and dashpots that hold a body, along x, y, z. Each is given by its constants or by what the body's mass makes of them.

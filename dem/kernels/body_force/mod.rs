@@ -20,16 +20,21 @@ use crate::bodies::sums::ForceTorque;
 use crate::bodies::table::Bodies;
 use crate::lanes::vec4::xyz;
 use crate::shape::Shape;
-pub use skin::Skin;
+pub use skin::{Skin, Wet};
 pub use work::{BodyForceModel, ForceInput, ForceWork};
 
 impl BodyForce {
-    #[doc(hidden)]
-    pub fn wave(&self) -> Option<&Wave> {
+    /// Returns the water.
+    pub fn water(&self) -> Option<&Water> {
         match self {
-            BodyForce::Water(water) => water.wave.as_ref(),
+            BodyForce::Water(water) => Some(water),
             BodyForce::Wind(_) => None,
         }
+    }
+
+    #[doc(hidden)]
+    pub fn wave(&self) -> Option<&Wave> {
+        self.water()?.wave.as_ref()
     }
 }
 

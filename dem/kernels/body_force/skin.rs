@@ -106,6 +106,44 @@ impl Skin {
         skin
     }
 
+    /// Closed surface of outward triangles, concave or not, about a centre within it; `None` beyond 65,536
+    /// vertices.
+    pub fn of_surface(vertices: &[Vec3], faces: &[[u32; 3]], centre: &Vec3) -> Option<Skin> {
+        u16::try_from(vertices.len().saturating_sub(1)).ok()?;
+        let points: Vec<Vec3> = vertices.iter().map(|v| v - centre).collect();
+        let facet = |f: &[u32; 3]| {
+            let [a, b, c] = f.map(|k| points[k as usize]);
+            let area = (b - a).cross(&(c - a)) * 0.5;
+            Facet { corners: f.map(|k| k as u16), area, size: area.norm(), volume: a.dot(&area) / 3.0 }
+        };
+        let facets: Vec<Facet> = faces.iter().map(facet).collect();
+        let margin = points.iter().map(|p| p.norm()).fold(0.0, f64::max);
+        let mut skin = Skin { core: vec![Vec3::zeros()], points, facets, margin, ..Skin::default() };
+        let moment =
+            |f: &Facet| f.corners.iter().map(|&k| skin.points[k as usize]).sum::<Vec3>() * (0.25 * f.volume);
+        let whole = Group {
+            owners: 0..1,
+            offsets: 0..skin.points.len() as u32,
+            facets: 0..skin.facets.len() as u32,
+            volume: skin.facets.iter().map(|f| f.volume).sum(),
+            moment: skin.facets.iter().map(moment).sum(),
+            area: skin.facets.iter().map(|f| f.size).sum(),
+            flat: None,
+        };
+        // The centre of buoyancy of a submerged surface need not be its centre of mass.
+        skin.whole = (whole.volume, Vec3::zeros());
+        skin.owners = vec![0];
+        skin.offsets = skin.points.clone();
+        skin.groups = vec![whole];
+        skin.reach = margin;
+        Some(skin)
+    }
+
+    /// Vertices of the surface about the centre [m].
+    pub fn points(&self) -> &[Vec3] {
+        &self.points
+    }
+
     fn rounded(&mut self, core: &Core, radius: f64, places: &HashMap<(u8, u8), u16>) {
         // Arcs around vertices: directions and points.
         let mut arcs: Vec<Vec<(Vec3, u16)>> = vec![Vec::new(); core.corners.len()];
@@ -206,6 +244,16 @@ impl Skin {
         }
         heights.clear();
         heights.extend(self.core.iter().map(|p| up.dot(p) - level));
+        self.below_at(up, level, along, heights)
+    }
+
+    /// As [`Skin::below`], for [`Skin::of_surface`].
+    pub fn surface_below(&self, up: &Vec3, level: f64, along: &Vec3) -> Wet {
+        self.below_at(up, level, along, &[-level])
+    }
+
+    /// `heights`: of the core over the plane [m].
+    fn below_at(&self, up: &Vec3, level: f64, along: &Vec3, heights: &[f64]) -> Wet {
         let (mut sum, foot) = (Part::default(), up * level);
         for g in &self.groups {
             let owners = &self.owners[g.owners.start as usize..g.owners.end as usize];

@@ -110,7 +110,7 @@ impl Model {
         let dilated = bodies.iter().any(|b| matches!(input.shapes[b.shape], Shape::Polyhedron(_)));
         let given: Vec<WallInput> = input.all_walls().collect();
         let scarred = given.iter().any(|w| w.scarring.is_some());
-        let mut walls = Walls::new(&given, input.triangles.len())?;
+        let mut walls = Walls::afloat(&given, input.triangles.len(), &input.body_forces, &input.gravity)?;
         let shells = Shells::new(&given, &walls)?;
         let laws = if dilated || !shells.pairs.is_empty() { Laws::with_edges } else { Laws::new };
         let laws = laws(&input.materials, &input.contacts);
@@ -134,7 +134,7 @@ impl Model {
         let rigid = rigid.min(timestep::shells(&mut walls, &mut limit, &shells, &laws));
         let partners = timestep::partners(&bodies, &input);
         let collision = collision::longest(&bodies, &input, &laws, &partners, expected, radii.1);
-        let fluids = body_force::time_constant(&input.body_forces, &bodies, &input.gravity);
+        let fluids = timestep::fluids(&input, &bodies, &walls);
         check::fluid_step(&input.time_step, fluids)?;
         let landing = timestep::landing(&bodies, &input, &laws, expected);
         let longest = rigid.min(landing).min(body_force::RESOLVED * fluids);

@@ -17,6 +17,7 @@ use crate::pairs::cross::Cross;
 use crate::pairs::groups::Groups;
 use crate::pairs::patches::PatchList;
 use crate::shape::plane::PlaneMotion;
+use crate::wall::hull::WaterLoad;
 use crate::wall::state::WallState;
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
@@ -224,6 +225,17 @@ impl State {
         self.walls[wall].orientation
     }
 
+    /// Roll, pitch and heading of a wall since the start, about x, y, z in this order [rad].
+    pub fn wall_angles(&self, wall: usize) -> Vec3 {
+        let q = self.walls[wall].orientation;
+        let sine = (2.0 * (q.w * q.j - q.k * q.i)).clamp(-1.0, 1.0);
+        Vec3::new(
+            libm::atan2(2.0 * (q.w * q.i + q.j * q.k), 1.0 - 2.0 * (q.i * q.i + q.j * q.j)),
+            libm::asin(sine),
+            libm::atan2(2.0 * (q.w * q.k + q.i * q.j), 1.0 - 2.0 * (q.j * q.j + q.k * q.k)),
+        )
+    }
+
     /// Current position of a wall point, initially `x` [m].
     pub fn wall_point(&self, model: &Model, wall: usize, x: &Vec3) -> Vec3 {
         self.walls[wall].to_world(&model.walls.walls[wall].centre, x)
@@ -242,6 +254,12 @@ impl State {
     /// Contact force on a wall [N] and moment about its centre [N m] in the last step.
     pub fn wall_force(&self, wall: usize) -> (Vec3, Vec3) {
         (self.walls[wall].force, self.walls[wall].moment)
+    }
+
+    /// Load of water and propulsion on a rigid-body wall at `time`; none if it does not float.
+    pub fn water_load(&self, model: &Model, wall: usize) -> Option<WaterLoad> {
+        let body = model.walls.walls[wall].body.as_ref()?;
+        body.water_load(&self.walls[wall], self.time, 0.5 * self.step_size.last)
     }
 
     /// Force of a servo-controlled wall compared with its target; none for other walls.

@@ -22,6 +22,7 @@ use super::input::ModelInput;
 use crate::base::Vec3;
 use crate::base::names::Names;
 use crate::bodies::table::{Bodies, Body, BodyKind};
+use crate::body_force;
 use crate::bond;
 use crate::contact::narrow_phase::{DEEPEST, LENGTH};
 use crate::law::Laws;
@@ -90,6 +91,11 @@ impl DtLimit {
         let body = group(self.body).map_or_else(|| "no body".into(), |group| names.body(group, self.body));
         format!("{body} (effective mass {:.3e} kg){contact}{bonds}", self.mass)
     }
+}
+
+/// Shortest time constant of fluids on bodies and floating walls [s].
+pub(crate) fn fluids(input: &ModelInput, bodies: &Bodies, walls: &Walls) -> f64 {
+    body_force::time_constant(&input.body_forces, bodies, &input.gravity).min(walls.water_time())
 }
 
 pub(crate) fn limit(

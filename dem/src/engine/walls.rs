@@ -11,8 +11,9 @@ use crate::base::balance_terms::BalanceTerms;
 use crate::base::failure::Failure;
 use crate::bodies::sums::WallSum;
 use crate::integrate::rotation;
+use crate::integrate::step_size::StepSize;
 use crate::shape::plane::PlaneMotion;
-use crate::wall::body::{self, Ground};
+use crate::wall::body::{self, Body, Ground};
 use crate::wall::servo::Servo;
 use crate::wall::state::WallState;
 use nalgebra::UnitQuaternion;
@@ -48,7 +49,7 @@ pub(crate) fn advance(
                 let ground = ground(model, &state.planes, kick);
                 let (force, torque) = body::ground_reaction(&ground, b, wall.material, own, balance);
                 let (force, torque) = (force + own.force, torque + own.moment);
-                b.advance(own, &force, &torque, &model.gravity, &state.step_size, balance);
+                float(b, own, (force, torque), &model.gravity, (state.time, &state.step_size), balance);
                 b.speed(own)
             }
             None => {
@@ -101,6 +102,28 @@ pub(crate) fn advance(
         fastest = fastest.max(speed);
     }
     (fastest, failure.or_else(|| meeting(model, state)))
+}
+
+/// Advances a rigid body under contacts, and under water if it floats, whose work and impulse are recorded.
+fn float(
+    body: &Body,
+    own: &mut WallState,
+    (force, torque): (Vec3, Vec3),
+    gravity: &Vec3,
+    (time, step_size): (f64, &StepSize),
+    balance: &mut BalanceTerms,
+) {
+    let kick = step_size.kick();
+    let Some((push, twist)) = body.action(own, (&force, &torque), gravity, (time, 0.5 * kick)) else {
+        body.advance(own, &force, &torque, gravity, step_size, balance);
+        return;
+    };
+    let (velocity, spin) = (own.velocity, own.spin);
+    balance.body_forces.add(&(body.centre + own.offset), &(push * kick));
+    balance.body_forces.angular += twist * kick;
+    body.advance(own, &(force + push), &(torque + twist), gravity, step_size, balance);
+    let mean = [(velocity + own.velocity) * 0.5, (spin + own.spin) * 0.5];
+    balance.work_body_forces += (push.dot(&mean[0]) + twist.dot(&mean[1])) * kick;
 }
 
 /// Velocity of a servo-controlled wall [m/s]; follows its force [N] against the target.

@@ -5,6 +5,7 @@
 //! bounds).
 
 use super::enclosed::{Enclosed, enclosed};
+use super::hull::{Hull, WaterLoad};
 use super::input::{Mount, RigidBody};
 use super::mount;
 use super::shape::WallShape;
@@ -13,6 +14,7 @@ use crate::base::Vec3;
 use crate::base::balance_terms::{BalanceTerms, Impulse};
 use crate::base::error::ModelError;
 use crate::bodies::block::Rotation;
+use crate::body_force::Water;
 use crate::contact::scalar;
 use crate::integrate::step_size::StepSize;
 use crate::law::{ContactGeometry, History, Laws};
@@ -42,6 +44,8 @@ pub(crate) struct Body {
     /// Whether vertices contact planes.
     stands: bool,
     mount: Option<Mount>,
+    /// Water on it, if it floats.
+    hull: Option<Box<Hull>>,
 }
 
 impl Body {
@@ -102,7 +106,23 @@ impl Body {
             vertices,
             stands,
             mount: input.mount.filter(|m| m.stiffness != Vec3::zeros() || m.damping != Vec3::zeros()),
+            hull: None,
         })
+    }
+
+    /// Lets water act on the body; `surface`: of the wall.
+    ///
+    /// # Errors
+    /// As [`Hull::new`].
+    pub fn float(
+        &mut self,
+        input: &RigidBody,
+        surface: (&[Vec3], &[[u32; 3]]),
+        water: &Water,
+        gravity: &Vec3,
+    ) -> Result<(), &'static str> {
+        self.hull = Hull::new(self, input, surface, water, gravity)?.map(Box::new);
+        Ok(())
     }
 
     /// Velocities half a step earlier.
@@ -110,11 +130,43 @@ impl Body {
         let damping =
             self.mount.map_or(Vec3::zeros(), |m| m.damping.component_mul(&self.velocity) / self.mass);
         let kick = Vec3::from_fn(|d, _| if self.fixed >> d & 1 == 1 { 0.0 } else { gravity[d] - damping[d] });
-        state.velocity = self.velocity - kick * (0.5 * dt);
+        state.velocity = self.velocity;
         state.spin = self.spin;
         state.frame = self.axes;
         let local = self.axes.inverse_transform_vector(&self.spin);
         state.momentum = self.axes * local.component_mul(&self.inertia);
+        let kick = match self.action(state, (&Vec3::zeros(), &Vec3::zeros()), gravity, (0.0, 0.0)) {
+            None => kick,
+            Some((force, _)) => kick.zip_map(&force, |k, f| if k == 0.0 { k } else { k + f / self.mass }),
+        };
+        state.velocity = self.velocity - kick * (0.5 * dt);
+    }
+
+    /// Load of the water, if the body floats; `late`: time since the velocity of the state [s].
+    pub fn water_load(&self, state: &WallState, time: f64, late: f64) -> Option<WaterLoad> {
+        self.hull.as_ref().map(|hull| hull.load(self, state, time, late))
+    }
+
+    /// Force and torque of the water, if the body floats, under those of contacts.
+    pub fn action(
+        &self,
+        state: &WallState,
+        (force, torque): (&Vec3, &Vec3),
+        gravity: &Vec3,
+        (time, late): (f64, f64),
+    ) -> Option<(Vec3, Vec3)> {
+        let hull = self.hull.as_ref()?;
+        let load = hull.load(self, state, time, late);
+        let support = self.mount.map_or(Vec3::zeros(), |m| {
+            -m.stiffness.component_mul(&state.offset) - m.damping.component_mul(&state.velocity)
+        });
+        let others = force + gravity * self.mass + support;
+        Some(hull.act(self, state, &load, (&others, torque)))
+    }
+
+    /// Shortest time per radian of the body in the water [s].
+    pub fn water_time(&self) -> f64 {
+        self.hull.as_ref().map_or(f64::INFINITY, |hull| hull.time_constant(self.mass))
     }
 
     fn spin_of(&self, frame: &UnitQuaternion<f64>, momentum: &Vec3) -> Vec3 {

@@ -70,7 +70,7 @@ fn motion(wall: &WallInput) -> Option<&'static str> {
         if b.rounding.is_some_and(|r| !(r > 0.0 && r.is_finite())) {
             return Some("the rounding of its corners must be positive, and finite");
         }
-        return mount(b);
+        return mount(b).or_else(|| water(b));
     }
     None
 }
@@ -81,6 +81,34 @@ fn scarring(wall: &WallInput) -> Option<&'static str> {
         return Some("a wall with scarring must be of triangles and fixed");
     }
     scarring.fault()
+}
+
+fn water(body: &RigidBody) -> Option<&'static str> {
+    let good = |x: f64| x >= 0.0 && x.is_finite();
+    if let Some(w) = &body.water {
+        let vectors = [w.drag, w.drag_moment, w.added_mass, w.added_inertia, w.damping_ratio];
+        if !(vectors.iter().flatten().all(|x| good(*x)) && good(w.skin_drag)) {
+            return Some("the coefficients of its water must be zero or positive, and finite");
+        }
+    }
+    let drive = body.propulsion.as_ref()?;
+    if body.water.is_none() {
+        return Some("a body needs water for its propulsion");
+    }
+    let table = |t: &[[f64; 2]]| {
+        !t.is_empty() && t.iter().flatten().all(|x| x.is_finite()) && t.is_sorted_by(|a, b| a[0] < b[0])
+    };
+    let unit = |v: &Vec3| finite(v) && (v.norm() - 1.0).abs() < 1e-9;
+    if !(finite(&drive.point) && unit(&drive.direction) && table(&drive.thrust) && good(drive.diameter)) {
+        return Some("its propulsion needs a finite point, a unit direction and ascending times");
+    }
+    let rudder = drive.rudder.as_ref()?;
+    let positive = [rudder.area, rudder.aspect_ratio].iter().all(|x| *x > 0.0 && x.is_finite());
+    let good = positive && finite(&rudder.point) && table(&rudder.angle);
+    if !good || libm::hypot(drive.direction.x, drive.direction.y) < 1e-6 {
+        return Some("its rudder needs a positive area, ascending times, and a thrust that is not vertical");
+    }
+    None
 }
 
 fn mount(body: &RigidBody) -> Option<&'static str> {

@@ -76,6 +76,55 @@ pub struct RigidBody {
     /// Rounding radius in wall–wall contacts [m]; default: 1/50 of the smallest side of the bounds, or less
     /// if the surface requires it.
     pub rounding: Option<f64>,
+    /// Forces of the water ([`crate::Water`]) on closed triangles.
+    pub water: Option<BodyWater>,
+    /// Thrust and rudder, with `water`.
+    pub propulsion: Option<Propulsion>,
+}
+
+/// Coefficients of water forces, along and about the initial world axes, which follow the body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyWater {
+    /// Form drag coefficients of the wet area projected along the flow [-].
+    pub drag: Vec3,
+    /// Skin drag coefficient of the wet surface [-].
+    pub skin_drag: f64,
+    /// Coefficients of the quadratic moments against rotation [-].
+    pub drag_moment: Vec3,
+    /// Added mass over displaced mass [-].
+    pub added_mass: Vec3,
+    /// Added inertia over inertia [-].
+    pub added_inertia: Vec3,
+    /// Linear damping over critical in heave, roll (about x), pitch (about y) [-].
+    pub damping_ratio: Vec3,
+}
+
+/// Prescribed thrust and rudder angle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Propulsion {
+    /// Initial position of the propeller [m].
+    pub point: Vec3,
+    /// Initial direction of thrust.
+    pub direction: Vec3,
+    /// Thrust: times [s] and forces [N].
+    pub thrust: Vec<[f64; 2]>,
+    /// Propeller diameter [m], whose race meets the rudder; zero: no race.
+    pub diameter: f64,
+    /// Rudder.
+    pub rudder: Option<Rudder>,
+}
+
+/// Rudder on a stock along the initial vertical.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rudder {
+    /// Initial position of the centre of pressure [m].
+    pub point: Vec3,
+    /// Area [m²].
+    pub area: f64,
+    /// Aspect ratio Λ, squared height over area [-].
+    pub aspect_ratio: f64,
+    /// Times [s] and angles [rad], positive to port.
+    pub angle: Vec<[f64; 2]>,
 }
 
 /// Linear springs and dashpots along world axes, initially unstretched.

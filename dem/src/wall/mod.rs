@@ -7,6 +7,7 @@
 pub mod body;
 pub(crate) mod check;
 mod enclosed;
+pub mod hull;
 pub mod input;
 mod mount;
 pub mod servo;
@@ -16,6 +17,9 @@ pub(crate) mod shells;
 pub mod state;
 pub(crate) mod triangulated;
 
-pub use input::{Motion, Mount, Oscillation, RigidBody, TriangleSurface, WallInput};
+pub use hull::WaterLoad;
+pub use input::{
+    BodyWater, Motion, Mount, Oscillation, Propulsion, RigidBody, Rudder, TriangleSurface, WallInput,
+};
 pub use servo::Servo;
 pub use shape::{PlanCircle, WallShape, square};

@@ -36,13 +36,7 @@ pub struct Servo {
 impl Servo {
     /// Returns the target force [N].
     pub fn target(&self, time: f64) -> f64 {
-        let after = self.force.partition_point(|p| p[0] <= time);
-        match (after.checked_sub(1).map(|k| self.force[k]), self.force.get(after)) {
-            (Some(a), Some(b)) => a[1] + (b[1] - a[1]) * (time - a[0]) / (b[0] - a[0]),
-            (Some(a), None) => a[1],
-            (None, Some(b)) => b[1],
-            (None, None) => 0.0,
-        }
+        interpolated(&self.force, time)
     }
 
     /// Speed [m/s] under displacement control.
@@ -64,6 +58,17 @@ impl Servo {
             missing.signum() * (GROWTH * last.abs()).max(LEAST * self.max_speed)
         };
         speed.clamp(-self.max_speed, self.max_speed)
+    }
+}
+
+/// Value of a table of times and values, constant beyond its ends; zero if it is empty.
+pub(super) fn interpolated(table: &[[f64; 2]], time: f64) -> f64 {
+    let after = table.partition_point(|p| p[0] <= time);
+    match (after.checked_sub(1).map(|k| table[k]), table.get(after)) {
+        (Some(a), Some(b)) => a[1] + (b[1] - a[1]) * (time - a[0]) / (b[0] - a[0]),
+        (Some(a), None) => a[1],
+        (None, Some(b)) => b[1],
+        (None, None) => 0.0,
     }
 }
 

@@ -7,6 +7,7 @@ use super::state::WallState;
 use super::triangulated::{self, SLACK, Triangle};
 use crate::base::Vec3;
 use crate::base::error::{ModelError, Partner};
+use crate::body_force::{BodyForce, Water};
 use crate::integrate::rotation;
 use crate::law::scarring::Scarring;
 use crate::shape::triangle::Region;
@@ -146,6 +147,41 @@ impl Walls {
             reach,
         });
         Ok(())
+    }
+
+    /// As [`Walls::new`], with bodies that float in the water.
+    ///
+    /// # Errors
+    /// Also open surfaces, too many vertices.
+    pub(crate) fn afloat(
+        input: &[WallInput],
+        plain: usize,
+        forces: &[BodyForce],
+        gravity: &Vec3,
+    ) -> Result<Walls, ModelError> {
+        let mut walls = Walls::new(input, plain)?;
+        if let Some(water) = forces.iter().find_map(BodyForce::water) {
+            walls.float(input, water, gravity)?;
+        }
+        Ok(walls)
+    }
+
+    fn float(&mut self, input: &[WallInput], water: &Water, gravity: &Vec3) -> Result<(), ModelError> {
+        for (index, given) in input.iter().enumerate() {
+            if let (Some(rigid), Some(surface)) = (&given.body, given.shape.triangulated())
+                && let Some(body) = &mut self.walls[index].body
+            {
+                let floats = body.float(rigid, surface, water, gravity);
+                floats.map_err(|problem| ModelError::Wall { wall: self.name(index), problem })?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Shortest time per radian of bodies in the water [s].
+    pub(crate) fn water_time(&self) -> f64 {
+        let bodies = self.walls.iter().filter_map(|w| w.body.as_ref());
+        bodies.map(Body::water_time).fold(f64::INFINITY, f64::min)
     }
 
     pub(crate) fn name(&self, wall: usize) -> String {

@@ -1,5 +1,6 @@
 //! Wall shapes: all that other files compute from the kind.
 
+use super::enclosed::enclosed;
 use crate::base::Vec3;
 use crate::shape::body_shape::Outline;
 use crate::spatial::round::Round;
@@ -70,6 +71,11 @@ impl WallShape {
         } else {
             None
         }
+    }
+
+    /// Whether its triangles enclose a volume.
+    pub fn is_closed(&self) -> bool {
+        self.triangulated().is_some_and(|(vertices, triangles)| enclosed(vertices, triangles).is_some())
     }
 
     /// Returns what is wrong with its numbers.

@@ -172,6 +172,8 @@ pub fn mill(n: usize) -> ModelInput {
         fixed: [false; 6],
         mount: None,
         rounding: Some(0.015),
+        water: None,
+        propulsion: None,
     };
     let other = RigidBody { velocity: Vec3::new(-2.0, 0.0, -1.0), rounding: Some(0.015), ..body.clone() };
     input.walls.push(WallInput { body: Some(body), ..WallInput::fixed(block.clone(), 0) });

@@ -16,6 +16,7 @@ mod device_changes;
 mod device_search;
 mod disks;
 mod extremes;
+mod floating;
 mod friction;
 mod hertz;
 mod impact;

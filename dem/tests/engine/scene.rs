@@ -61,6 +61,8 @@ pub fn free(mass: f64) -> RigidBody {
         fixed: [false; 6],
         mount: None,
         rounding: None,
+        water: None,
+        propulsion: None,
     }
 }
 

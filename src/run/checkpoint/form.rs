@@ -19,7 +19,7 @@ use trackbed_io::failure::Failure;
 
 pub(super) const MAGIC: &str = "trackbed checkpoint ";
 /// Supported format version.
-pub(super) const FORM: u32 = 25;
+pub(super) const FORM: u32 = 26;
 pub(super) const CHECKSUM: usize = 8;
 const BUFFER: usize = 1 << 18;
 

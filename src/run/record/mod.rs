@@ -15,9 +15,10 @@ use super::recorder::Now;
 use super::runout::Passage;
 use super::specimen::{self, SpecimenRecord};
 use super::structures;
-use super::summary::LoadRecord;
+use super::summary::{FloatingRecord, LoadRecord};
 use super::system::System;
 use super::track_output;
+use super::wall_output;
 use serde::{Deserialize, Serialize};
 use solid_probes::CycleStresses;
 use std::io;
@@ -70,6 +71,7 @@ struct Course {
     #[serde(default)]
     cycle_stresses: CycleStresses,
     passage: Option<Passage>,
+    floating: Vec<FloatingRecord>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -207,6 +209,9 @@ impl<'a> Results<'a> {
         let values = columns::values(&now);
         self.history.row(&values)?;
         structures::follow(&self.columns, &values, &mut self.course.loads);
+        if let (Some(part), Some(view)) = (&self.job.grains, system.grains()) {
+            wall_output::follow(part, view, &mut self.course.floating);
+        }
         structures::follow_loads(&self.columns, &values, structures_of(self.job), &mut self.course.load_rows);
         Ok(())
     }
@@ -364,6 +369,11 @@ impl<'a> Results<'a> {
     /// Loads on structures, with their statistics.
     pub fn loads(&self) -> Vec<LoadRecord> {
         structures::with_hazards(&self.course.loads, structures_of(self.job), &self.course.load_rows)
+    }
+
+    /// Floating walls.
+    pub fn floating(&self) -> &[FloatingRecord] {
+        &self.course.floating
     }
 
     /// Completed load cycles.

@@ -339,6 +339,7 @@ impl<'a> TimeLoop<'a> {
             summary.bonds = Some(BondSummary { events, ..bond_output::summary(view) });
         }
         summary.structures = self.recorder.loads();
+        summary.floating = self.recorder.floating().to_vec();
         let done = self.place.done;
         let (grain_steps, solid_steps) = system.steps_done(done);
         let end = self.time(done);

@@ -52,6 +52,9 @@ pub struct Summary {
     /// Loads on structures.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub structures: Vec<LoadRecord>,
+    /// Floating walls.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub floating: Vec<FloatingRecord>,
     /// Interface force and moment.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coupling: Option<CouplingRecord>,

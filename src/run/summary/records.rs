@@ -367,6 +367,38 @@ pub struct LoadRecord {
     pub hazard: Option<HazardRecord>,
 }
 
+/// Floating wall at history rows.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct FloatingRecord {
+    /// Wall name.
+    pub name: String,
+    /// Number of rows.
+    pub rows: u64,
+    /// Displacement of the centre [m], and roll, pitch, heading at the end [rad].
+    pub travel: [f64; 3],
+    pub rotation: [f64; 3],
+    /// Mean horizontal speed [m/s].
+    pub mean_speed: f64,
+    /// Mean force of grains and walls, and of the water without thrust, rudder and added mass [N].
+    pub mean_contact_force: [f64; 3],
+    pub mean_water_force: [f64; 3],
+    /// Thrust and rudder, if it has them. Always written: fields are unnamed.
+    #[serde(default)]
+    pub propulsion: Option<PropulsionRecord>,
+}
+
+/// Thrust and rudder at history rows.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct PropulsionRecord {
+    /// Mean requested and applied thrust [N].
+    pub mean_requested: f64,
+    pub mean_applied: f64,
+    /// Largest rudder angle, either way [rad].
+    pub largest_rudder_angle: f64,
+    /// Largest force on the rudder [N].
+    pub largest_rudder_force: f64,
+}
+
 /// Horizontal motion at history rows.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct MotionRecord {

@@ -17,6 +17,7 @@ impl Summary {
         self.report_settlement(&mut lines, details);
         self.report_track(&mut lines);
         self.report_solid(&mut lines, details);
+        self.report_floating(&mut lines);
         self.report_loads(&mut lines);
         lines.extend(self.bed.flow.iter().flat_map(FlowRecord::report));
         let bed = &self.bed;
@@ -107,6 +108,28 @@ impl Summary {
                 "momentum error {:.1e}, angular {:.1e} (relative to the impulses)",
                 m.linear, m.angular
             ));
+        }
+    }
+
+    fn report_floating(&self, lines: &mut Vec<String>) {
+        for f in &self.floating {
+            let [x, y, z] = f.mean_contact_force;
+            lines.push(format!(
+                "{}: mean speed {:.3} m/s, heading {:.2} degrees; mean contact force {x:.3e} N along x, {y:.3e} N along y, {z:.3e} N along z",
+                f.name,
+                f.mean_speed,
+                f.rotation[2].to_degrees()
+            ));
+            if let Some(p) = &f.propulsion {
+                lines.push(format!(
+                    "propulsion of {}: thrust requested {:.3e} N, applied {:.3e} N (means); rudder: largest angle {:.1} degrees, largest force {:.3e} N",
+                    f.name,
+                    p.mean_requested,
+                    p.mean_applied,
+                    p.largest_rudder_angle.to_degrees(),
+                    p.largest_rudder_force
+                ));
+            }
         }
     }
 

@@ -100,6 +100,73 @@ fn mounts_of_bodies() {
     }
 }
 
+const WATER: &str = "[water]\ndrag = 0.6";
+const PYRAMID: &str = "kind = \"triangles\"\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]\ntriangles = [[0, 1, 2], [0, 1, 3], [1, 2, 3], [0, 2, 3]]";
+
+#[test]
+fn water_on_bodies() {
+    let open = PYRAMID.replace(", [0, 2, 3]", "");
+    let drive = |keys: &str| format!("water = {{}}, propulsion = {{ point = [0, 0, 0], {keys} }}");
+    let rudder = |keys: &str| drive(&format!("thrust = 1, rudder = {{ point = [0, 0, 0], {keys} }}"));
+    for (shape, keys, words) in [
+        (PYRAMID, "water = { drag = [1, -1, 1] }", "water.drag: found -1, expected 0 to 100"),
+        (PYRAMID, "water = { skin_drag = 101 }", "water.skin_drag: found 101, expected 0 to 100"),
+        (
+            PYRAMID,
+            "water = { damping_ratio = [0, 11, 0] }",
+            "water.damping_ratio: found 11, expected 0 to 10",
+        ),
+        (
+            &open,
+            "inertia = [1, 1, 1, 0, 0, 0], centre = [0, 0, 0], water = {}",
+            "water: found an open surface, expected a closed surface, each edge of exactly two triangles",
+        ),
+        (
+            PYRAMID,
+            "propulsion = { thrust = 1, point = [0, 0, 0] }",
+            "propulsion: found, but it has no effect without `water`",
+        ),
+        (
+            PYRAMID,
+            &drive("thrust = 1, diameter = 1"),
+            "propulsion.diameter: found, but it has no effect without `rudder`",
+        ),
+        (
+            PYRAMID,
+            &drive("thrust = 1, history = [[1, 0], [0, 1]]"),
+            "propulsion.history: found times that do not rise, expected points with rising times",
+        ),
+        (
+            PYRAMID,
+            &rudder("area = 0, history = [[0, 0]]"),
+            "propulsion.rudder.area: found 0, expected an area above 0",
+        ),
+        (
+            PYRAMID,
+            &rudder("area = 1, history = [[0, \"100 deg\"]]"),
+            "propulsion.rudder.history: found 1.7453292519943295, expected angles of -90 to 90 degrees",
+        ),
+        (
+            PYRAMID,
+            &drive(
+                "thrust = 1, direction = [0, 0, 1], rudder = { point = [0, 0, 0], area = 1, history = [[0, 0]] }",
+            ),
+            "propulsion.direction: found vertical, expected a direction that is not vertical, with `rudder`",
+        ),
+    ] {
+        let text = format!("{shape}\nbody = {{ mass = 1, {keys} }}");
+        let scene = grains_scene().scene(PLANE, &text).append(SCENE, WATER);
+        scene.refused(&format!("scene.toml:20: walls.0.body.{words}"));
+    }
+    let text = format!("{PYRAMID}\nbody = {{ mass = 1, water = {{}} }}");
+    grains_scene()
+        .scene(PLANE, &text)
+        .refused("scene.toml:20: walls.0.body.water: found without [water], expected both");
+    grains_scene().scene(PLANE, &ball("water = {}")).append(SCENE, WATER).refused(
+        "scene.toml:20: walls.0.body.water: found, but it has no effect without `kind = \"triangles\"` or `\"mesh\"`",
+    );
+}
+
 fn ground(wall: &str, scarring: &str) -> String {
     format!(
         "kind = \"triangles\"\nvertices = [[0, 0, -1], [1, 0, -1], [0, 1, -1]]\ntriangles = [[0, 1, 2]]\n{wall}\nscarring = {{ {scarring} }}"

@@ -1,10 +1,10 @@
 //! `[structure.hazard]` resolved.
 
-use crate::scene::structure::{Hazard, LevelIce, PeakLaw};
+use crate::scene::structure::{Hazard, HullForm, LevelIce, PeakLaw};
 use crate::scene::{SceneError, Table};
 use std::f64::consts::FRAC_PI_2;
 use trackbed_io::extremes::Law;
-use trackbed_io::ice_loads::{Cone, crushing};
+use trackbed_io::ice_loads::{Cone, Ship, crushing};
 
 const MOST: usize = 100;
 
@@ -87,47 +87,96 @@ fn level_ice(ice: &Table<LevelIce>) -> Result<f64, SceneError> {
     let width = ice.check("width", ice.width, |x| x > 0.0, "a width above 0")?.si;
     let strength = "a strength above 0";
     let keys = ["strength", "flexural_strength"];
+    let of_cone = [
+        ("angle", ice.angle.is_some()),
+        ("top_width", ice.top_width.is_some()),
+        ("ride_up", ice.ride_up.is_some()),
+    ];
+    let of_bending = [
+        ("friction", ice.friction.is_some()),
+        ("density", ice.density.is_some()),
+        ("hull", ice.hull.is_some()),
+    ];
     match (ice.strength, ice.flexural_strength) {
         (Some(value), None) => {
-            let of_cone = [
-                ("angle", ice.angle.is_some()),
-                ("top_width", ice.top_width.is_some()),
-                ("friction", ice.friction.is_some()),
-                ("density", ice.density.is_some()),
-                ("ride_up", ice.ride_up.is_some()),
-            ];
-            ice.reject_without(of_cone, "`flexural_strength`")?;
+            ice.reject_without(of_cone.into_iter().chain(of_bending), "`flexural_strength`")?;
             Ok(crushing(width, thickness, ice.check(keys[0], value, |x| x > 0.0, strength)?.si))
         }
         (None, Some(value)) => {
             let flexural_strength = ice.check(keys[1], value, |x| x > 0.0, strength)?.si;
-            let angle = ice.need("angle", ice.angle, "the slope of the cone")?;
-            let top_width = ice.need("top_width", ice.top_width, "the width at the top of the cone")?;
-            let friction = ice.need("friction", ice.friction, "the friction of ice on the cone")?;
-            let density = ice.need("density", ice.density, "the density of the ice")?;
-            let ride_up = ice.check("ride_up", ice.ride_up, |x| x >= 0.0, "a thickness of at least 0")?;
-            let slope = |a: f64| a > 0.0 && a < FRAC_PI_2;
-            let cone = Cone {
-                width,
-                top_width: ice
-                    .check("top_width", top_width, |x| x >= 0.0 && x < width, "at least 0, below `width`")?
-                    .si,
-                angle: ice.check("angle", angle, slope, "an angle between 0 and 90 degrees")?.si,
-                friction: ice.check("friction", friction, |x| x >= 0.0, "at least 0")?,
-                thickness,
-                ride_up: ride_up.map_or(thickness, |x| x.si),
-                flexural_strength,
-                density: ice.check("density", density, |x| x > 0.0, "a density above 0")?.si,
-            };
-            if !cone.slides() {
-                return Err(ice.error(
-                    "friction",
-                    friction.to_string(),
-                    "a friction at which ice slides up the cone",
-                ));
+            match ice.optional("hull", &ice.hull) {
+                None => cone(ice, (width, thickness, flexural_strength)),
+                Some(hull) => {
+                    ice.reject_with(of_cone, "`hull`")?;
+                    ship(ice, &hull, (width, thickness, flexural_strength))
+                }
             }
-            Ok(cone.load().iter().sum())
         }
         (strength, _) => Err(ice.choice(keys, strength.is_some())),
     }
+}
+
+fn slope(angle: f64) -> bool {
+    angle > 0.0 && angle < FRAC_PI_2
+}
+
+const SLOPE: &str = "an angle between 0 and 90 degrees";
+
+fn cone(
+    ice: &Table<LevelIce>,
+    (width, thickness, flexural_strength): (f64, f64, f64),
+) -> Result<f64, SceneError> {
+    let angle = ice.need("angle", ice.angle, "the slope of the cone")?;
+    let top_width = ice.need("top_width", ice.top_width, "the width at the top of the cone")?;
+    let friction = ice.need("friction", ice.friction, "the friction of ice on the cone")?;
+    let density = ice.need("density", ice.density, "the density of the ice")?;
+    let ride_up = ice.check("ride_up", ice.ride_up, |x| x >= 0.0, "a thickness of at least 0")?;
+    let cone = Cone {
+        width,
+        top_width: ice
+            .check("top_width", top_width, |x| x >= 0.0 && x < width, "at least 0, below `width`")?
+            .si,
+        angle: ice.check("angle", angle, slope, SLOPE)?.si,
+        friction: ice.check("friction", friction, |x| x >= 0.0, "at least 0")?,
+        thickness,
+        ride_up: ride_up.map_or(thickness, |x| x.si),
+        flexural_strength,
+        density: ice.check("density", density, |x| x > 0.0, "a density above 0")?.si,
+    };
+    if !cone.slides() {
+        return Err(ice.error(
+            "friction",
+            friction.to_string(),
+            "a friction at which ice slides up the cone",
+        ));
+    }
+    Ok(cone.load().iter().sum())
+}
+
+fn ship(
+    ice: &Table<LevelIce>,
+    hull: &Table<HullForm>,
+    (beam, thickness, flexural_strength): (f64, f64, f64),
+) -> Result<f64, SceneError> {
+    let friction = ice.need("friction", ice.friction, "the friction of ice on the hull")?;
+    let density = ice.need("density", ice.density, "the density of the ice")?;
+    let positive = |x: f64| x > 0.0;
+    let ship = Ship {
+        length: hull.check("length", hull.length, positive, "a length above 0")?.si,
+        beam,
+        draught: hull.check("draught", hull.draught, positive, "a draught above 0")?.si,
+        stem_angle: hull.check("stem_angle", hull.stem_angle, slope, SLOPE)?.si,
+        entrance_angle: hull.check("entrance_angle", hull.entrance_angle, slope, SLOPE)?.si,
+        speed: hull.check("speed", hull.speed, |v| v >= 0.0, "a speed of at least 0")?.si,
+        friction: ice.check("friction", friction, |x| x >= 0.0, "at least 0")?,
+        thickness,
+        flexural_strength,
+        young: hull.check("young", hull.young, positive, "a modulus above 0")?.si,
+        density: ice.check("density", density, positive, "a density above 0")?.si,
+    };
+    if !ship.slides() {
+        let expected = "a friction at which ice slides along the stem";
+        return Err(ice.error("friction", friction.to_string(), expected));
+    }
+    Ok(ship.resistance().iter().sum())
 }

@@ -1,11 +1,13 @@
 //! `[[walls]]` resolved.
 
+mod afloat;
 mod motion;
 mod scarring;
 mod shape;
 
 use super::check::find;
 use crate::scene::walls::{Wall, WallKind};
+use crate::scene::water::Water;
 use crate::scene::{Scene, Table};
 use motion::{body, motion, servo};
 use scarring::scarring;
@@ -42,7 +44,7 @@ pub(super) fn build(scene: &Table<Scene>) -> Result<WallsPart, Failure> {
     for (i, wall) in scene.rows("walls", &scene.walls).enumerate() {
         let material = find(scene, &wall, "material", &wall.material)?;
         let before = part.others.len();
-        add(&wall, i, material, &mut part)?;
+        add(&wall, scene.water.as_ref(), (i, material), &mut part)?;
         let new = part.others.get(before).map(|w| &w.shape);
         if scene.track.is_some() && new.is_some_and(|shape| shape.plane().is_some()) {
             let expected = "a plane with no key but `velocity`: sleepers contact only such planes";
@@ -64,7 +66,12 @@ pub fn is_plain(wall: &Wall) -> bool {
         && !wall.record
 }
 
-fn add(wall: &Table<Wall>, index: usize, material: usize, part: &mut WallsPart) -> Result<(), Failure> {
+fn add(
+    wall: &Table<Wall>,
+    water: Option<&Water>,
+    (index, material): (usize, usize),
+    part: &mut WallsPart,
+) -> Result<(), Failure> {
     let shape = shape(wall)?;
     let motion = motion(wall)?;
     let name = wall.name.clone().unwrap_or_else(|| format!("wall{index}"));
@@ -77,7 +84,7 @@ fn add(wall: &Table<Wall>, index: usize, material: usize, part: &mut WallsPart) 
         return Ok(());
     }
     let servo = servo(wall)?;
-    let (body, scarring) = (body(wall)?, scarring(wall)?);
+    let (body, scarring) = (body(wall, &shape, water)?, scarring(wall)?);
     part.names.push(name.clone());
     if wall.record {
         part.recorded.push(Recorded { name, wall: part.others.len() });

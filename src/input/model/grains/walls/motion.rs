@@ -1,11 +1,13 @@
 //! Wall motion: prescribed, servo-controlled, or rigid-body.
 
+use super::afloat;
 use super::shape::direction;
 use crate::scene::track::HeldMotion;
 use crate::scene::units::vector;
 use crate::scene::walls::{Body, Pulses, Wall, WallKind};
+use crate::scene::water::Water;
 use crate::scene::{SceneError, Table, kinds};
-use trackbed_dem::{Motion, Mount, Oscillation, RigidBody, Servo, Vec3};
+use trackbed_dem::{Motion, Mount, Oscillation, RigidBody, Servo, Vec3, WallShape};
 
 pub(super) fn motion(wall: &Table<Wall>) -> Result<Motion, SceneError> {
     let mut motion = Motion {
@@ -122,7 +124,11 @@ fn haversines(pulses: &Table<Pulses>, force: f64) -> Result<Vec<[f64; 2]>, Scene
     Ok((0..=pulses.count * POINTS).map(point).collect())
 }
 
-pub(super) fn body(wall: &Table<Wall>) -> Result<Option<RigidBody>, SceneError> {
+pub(super) fn body(
+    wall: &Table<Wall>,
+    shape: &WallShape,
+    water: Option<&Water>,
+) -> Result<Option<RigidBody>, SceneError> {
     let Some(b) = wall.optional("body", &wall.body) else { return Ok(None) };
     if wall.kind == WallKind::Plane {
         return Err(wall.conflict("body", kinds(&[WallKind::Plane])));
@@ -155,6 +161,8 @@ pub(super) fn body(wall: &Table<Wall>) -> Result<Option<RigidBody>, SceneError> 
         fixed,
         mount: mount(&b, fixed)?,
         rounding: b.rounding.map(|r| r.si),
+        water: afloat::water(wall, &b, shape, water)?,
+        propulsion: afloat::propulsion(&b)?,
     }))
 }
 
