@@ -233,7 +233,7 @@ pub mod history {
         WALL_DISPLACEMENT: Vector "<wall>_displacement" "m" "displacement of the centre of the wall";
         WALL_VELOCITY: Vector "<wall>_velocity" "m/s" "velocity of the centre of a floating wall";
         WALL_ROTATION: Vector "<wall>_rotation" "rad" "roll, pitch, heading of a floating wall since the start";
-        WALL_WATER: Vector "<wall>_water" "N" "force of the water on a floating wall, without thrust, rudder, added mass";
+        WALL_WATER: Vector "<wall>_water" "N" "force of the water on a floating wall";
         WALL_WATER_MOMENT: Vector "<wall>_water_moment" "N m" "moment of that force about the centre of the wall";
         WALL_THRUST: Scalar "<wall>_thrust" "N" "thrust on a floating wall";
         WALL_RUDDER: Vector "<wall>_rudder" "N" "force on the rudder of a floating wall";

@@ -129,16 +129,18 @@ impl Body {
     pub fn start(&self, state: &mut WallState, gravity: &Vec3, dt: f64) {
         let damping =
             self.mount.map_or(Vec3::zeros(), |m| m.damping.component_mul(&self.velocity) / self.mass);
-        let kick = Vec3::from_fn(|d, _| if self.fixed >> d & 1 == 1 { 0.0 } else { gravity[d] - damping[d] });
+        let mut kick =
+            Vec3::from_fn(|d, _| if self.fixed >> d & 1 == 1 { 0.0 } else { gravity[d] - damping[d] });
         state.velocity = self.velocity;
         state.spin = self.spin;
         state.frame = self.axes;
         let local = self.axes.inverse_transform_vector(&self.spin);
         state.momentum = self.axes * local.component_mul(&self.inertia);
-        let kick = match self.action(state, (&Vec3::zeros(), &Vec3::zeros()), gravity, (0.0, 0.0)) {
-            None => kick,
-            Some((force, _)) => kick.zip_map(&force, |k, f| if k == 0.0 { k } else { k + f / self.mass }),
-        };
+        if let Some((force, _)) = self.action(state, (&Vec3::zeros(), &Vec3::zeros()), gravity, (0.0, 0.0)) {
+            for d in (0..3).filter(|d| self.fixed >> d & 1 == 0) {
+                kick[d] += force[d] / self.mass;
+            }
+        }
         state.velocity = self.velocity - kick * (0.5 * dt);
     }
 
