@@ -36,6 +36,9 @@ pub struct Analysis {
     /// Posterior of sampled parameters with targets.
     #[serde(default)]
     pub posterior: Option<Posterior>,
+    /// Reason of a missing posterior.
+    #[serde(default)]
+    pub without_posterior: Option<String>,
 }
 
 /// Sensitivity of a quantity to the parameters.
@@ -98,8 +101,13 @@ impl Analysis {
             points[*a].misfit.partial_cmp(&points[*b].misfit).unwrap_or(std::cmp::Ordering::Equal)
         });
         let sampled = plan.combine.is_none();
-        let posterior =
-            sampled.then(|| Posterior::of(&plan.factors, &points, &results, &plan.targets)).flatten();
+        let wanted = sampled && !plan.targets.is_empty();
+        let posterior = wanted.then(|| Posterior::of(&plan.factors, &points, &results, &plan.targets));
+        let (posterior, without_posterior) = match posterior {
+            None => (None, None),
+            Some(Ok(posterior)) => (Some(posterior), None),
+            Some(Err(reason)) => (None, Some(reason)),
+        };
         Analysis {
             factors: plan.factors.clone(),
             targets: plan.targets.clone(),
@@ -111,6 +119,7 @@ impl Analysis {
             best,
             hazard: Vec::new(),
             posterior,
+            without_posterior,
         }
     }
 }

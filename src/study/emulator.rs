@@ -135,10 +135,16 @@ impl Emulator {
         [self.mean + near.dot(&self.solved), variance.sqrt()]
     }
 
-    /// Returns a value and a standard deviation there as fitted; none outside the range of the fit.
-    pub fn fitted(&self, value: f64, deviation: f64) -> Option<[f64; 2]> {
-        let fitted = [self.transform.fitted(value), deviation * self.transform.slope(value)];
-        fitted.iter().all(|v| v.is_finite()).then_some(fitted)
+    /// Returns the variance of the quantity for a variance of the fitted value at `fitted`.
+    pub fn variance(&self, fitted: f64, variance: f64) -> f64 {
+        let slope = self.transform.slope(self.transform.value(fitted));
+        variance / (slope * slope)
+    }
+
+    /// Returns a standard deviation at `value` as fitted; none outside the range of the fit.
+    pub fn fitted_deviation(&self, value: f64, deviation: f64) -> Option<f64> {
+        let fitted = deviation * self.transform.slope(value);
+        (self.transform.fitted(value).is_finite() && fitted.is_finite()).then_some(fitted)
     }
 
     /// Returns the quantity of a fitted value.
@@ -241,14 +247,15 @@ mod tests {
         let values: Vec<f64> = points.iter().map(|p| libm::exp(5.0 * p[0])).collect();
         let fit = Emulator::fit(&points, &values).unwrap();
         assert!((fit.value(fit.at(&[0.5])[0]) / libm::exp(2.5) - 1.0).abs() < 0.01);
-        let [value, deviation] = fit.fitted(10.0, 1.0).unwrap();
-        assert!((value - libm::log(10.0)).abs() < 1e-12 && (deviation - 0.1).abs() < 1e-12);
-        assert_eq!(fit.fitted(-1.0, 1.0), None);
+        assert!((fit.fitted_deviation(10.0, 1.0).unwrap() - 0.1).abs() < 1e-12);
+        assert_eq!(fit.fitted_deviation(-1.0, 1.0), None);
+        // A deviation of 0.1 of a logarithm is a tenth of the value.
+        assert!((fit.variance(libm::log(10.0), 0.01) - 1.0).abs() < 1e-12);
         // Of both signs.
         let values: Vec<f64> = points.iter().map(|p| libm::sinh(8.0 * p[0] - 2.0)).collect();
         let fit = Emulator::fit(&points, &values).unwrap();
         assert!((fit.value(fit.at(&[0.3])[0]) / libm::sinh(0.4) - 1.0).abs() < 0.05);
-        let [value, _] = fit.fitted(-3.0, 0.1).unwrap();
-        assert!((fit.value(value) + 3.0).abs() < 1e-12);
+        let Transform::Asinh(size) = fit.transform else { panic!("{:?}", fit.transform) };
+        assert!((fit.fitted_deviation(-3.0, 0.1).unwrap() - 0.1 / libm::hypot(3.0, size)).abs() < 1e-12);
     }
 }

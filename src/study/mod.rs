@@ -108,6 +108,10 @@ pub fn count_runs(file: &Path) -> Result<usize, Failure> {
 /// Input errors, interrupts, a failed reference.
 pub fn execute(file: &Path, options: &Options, check: Check<'_>) -> Result<Finished, Failure> {
     let document = Document::open(file)?;
+    if !document.has("scene") && ["solid", "grains", "material"].iter().any(|key| document.has(key)) {
+        let expected = "a study, or the option --trade";
+        return Err(Failure::Input(format!("{}: found a scene, expected {expected}", file.display())));
+    }
     let dir = options.out.clone().unwrap_or_else(|| run::default_folder(file, &[]));
     let origin = Origin { study: run::quoted(file), written: None };
     perform(&document, &dir, &origin, options, check)
@@ -261,7 +265,7 @@ fn carry_out(
         && !options.force
         && std::fs::read_to_string(path).is_ok_and(|other| other != *text)
     {
-        let expected = "the same options, --force, or another --out";
+        let expected = "the same --set, --seeds and --tolerance, --force, or another --out";
         return Err(Failure::Input(format!("{}: found another study, expected {expected}", path.display())));
     }
     if !options.resume
@@ -300,7 +304,10 @@ fn carry_out(
     options.interrupt.end_at_once(true);
     result.map_err(|failure| match failure {
         Failure::Interrupted(_) => {
-            let part = options.part.map_or(String::new(), |(k, n)| format!(" --task {k}/{n}"));
+            let mut part = options.part.map_or(String::new(), |(k, n)| format!(" --task {k}/{n}"));
+            for (option, value) in [("jobs", options.jobs), ("threads", options.threads)] {
+                part += &value.map_or(String::new(), |n| format!(" --{option} {n}"));
+            }
             let (study, dir) = (&origin.study, run::quoted(store.dir()));
             Failure::Interrupted(format!(
                 "interrupted; resume with: trackbed study {study} --resume --out {dir}{part}"

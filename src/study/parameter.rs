@@ -50,6 +50,12 @@ pub fn resolve(document: &Document, file: &StudyFile) -> Result<Option<Samples>,
             return Err(document.error(&format!("parameter.{k}.name"), found, "distinct names"));
         }
     }
+    for (k, table) in file.parameter.iter().enumerate() {
+        if file.parameter[..k].iter().any(|earlier| earlier.key.trim() == table.key.trim()) {
+            let found = format!("{:?} twice", table.key);
+            return Err(document.error(&format!("parameter.{k}.key"), found, "distinct keys"));
+        }
+    }
     let points = points(document, sampling, factors.len())?;
     let of_point = |point: &Vec<f64>| {
         let all = factors.iter().zip(&file.parameter).zip(point);

@@ -1,7 +1,7 @@
 //! Posterior of sampled parameters given the targets (Kennedy and O'Hagan 2001, without model discrepancy).
 //!
 //! Prior uniform over the ranges; each quantity by an emulator; likelihood normal, with the tolerance of the target,
-//! the scatter of specimens and the uncertainty of the emulator.
+//! the scatter of specimens and the uncertainty of the emulator, all in units of the quantity.
 
 use super::design::{SOBOL_DIMENSIONS, sobol};
 use super::emulator::Emulator;
@@ -15,12 +15,16 @@ use serde::{Deserialize, Serialize};
 const POINTS: usize = 1 << 14;
 /// Effective points below which they are placed again, closer to the posterior.
 const ENOUGH: f64 = 500.0;
+/// Effective points below which nothing is determined.
+const FEWEST: f64 = 50.0;
 /// Largest number of such rounds.
 const ROUNDS: usize = 4;
 /// Weight outside the box of the next round, on each side of each parameter.
 const OUTSIDE: f64 = 1e-3;
 /// Ratio to the standard deviation of the prior above which a parameter is undetermined.
 const UNDETERMINED: f64 = 0.8;
+/// Mean deviation of a target above which it is not reached.
+const MISSED: f64 = 2.5;
 /// Correlation from which a pair of parameters is reported.
 const CORRELATED: f64 = 0.4;
 /// Lower and upper quantile of the bands.
@@ -37,6 +41,9 @@ pub struct Posterior {
     pub correlations: Vec<(String, String, f64)>,
     /// Effective number of points.
     pub effective: f64,
+    /// Targets out of reach, with their deviation in tolerances and scatter.
+    #[serde(default)]
+    pub missed: Vec<(String, f64)>,
 }
 
 /// Distribution of a parameter.
@@ -92,33 +99,36 @@ struct Sampled {
 }
 
 impl Posterior {
-    /// Evaluates sampled parameters; none without targets, enough samples, or with more than ten parameters.
+    /// Evaluates sampled parameters with targets; else the reason why not.
     pub fn of(
         factors: &[Factor],
         points: &[Point],
         results: &[Column],
         targets: &[Target],
-    ) -> Option<Posterior> {
+    ) -> Result<Posterior, String> {
         let varied: Vec<usize> =
             (0..factors.len()).filter(|k| factors[*k].categories.is_empty() && !factors[*k].random).collect();
-        if targets.is_empty() || varied.is_empty() || varied.len() > SOBOL_DIMENSIONS {
-            return None;
+        if !(1..=SOBOL_DIMENSIONS).contains(&varied.len()) {
+            return Err(format!("{} parameters, expected 1 to {SOBOL_DIMENSIONS}", varied.len()));
         }
-        if factors.iter().any(|f| !f.categories.is_empty()) {
-            return None;
+        if let Some(factor) = factors.iter().find(|f| !f.categories.is_empty()) {
+            return Err(format!("{} has categories", factor.name));
         }
         let fit = |q: usize| fitted(factors, &varied, points, &results[q], q, targets);
         let fits: Vec<Fitted<'_>> = (0..results.len()).filter_map(fit).collect();
-        if fits.iter().filter(|f| f.target.is_some()).count() < targets.len() {
-            return None;
+        let has = |t: &&Target| fits.iter().all(|f| f.target.is_none_or(|own| own.quantity != t.quantity));
+        if let Some(target) = targets.iter().find(has) {
+            let name = &results[target.quantity].name;
+            return Err(format!("{name} is constant, or has fewer than {} values", varied.len() + 4));
         }
         let sampled = sample(&fits, varied.len());
         let effective = effective(&sampled.weights);
         let marginal = |(d, k): (usize, &usize)| marginal(&factors[*k], &sampled, d);
-        Some(Posterior {
+        Ok(Posterior {
             parameters: varied.iter().enumerate().map(marginal).collect(),
             predictions: fits.iter().map(|fit| predict(fit, &sampled, varied.len())).collect(),
             correlations: correlations(factors, &varied, &sampled),
+            missed: missed(&fits, &sampled),
             effective,
         })
     }
@@ -136,7 +146,11 @@ impl Posterior {
         ];
         let row = |m: &Marginal| {
             let range = m.range.map(super::layout::four_digits).join(" – ");
-            let known = if m.is_undetermined() { "no" } else { "yes" };
+            let known = match (self.is_reliable(), m.is_undetermined()) {
+                (false, _) => "–",
+                (true, true) => "no",
+                (true, false) => "yes",
+            };
             let mut row = vec![Cell::text(&m.parameter), Cell::Text(range)];
             row.extend([m.band[0], m.median, m.band[1], m.deviation].map(|v| Cell::Number(v, None)));
             row.push(Cell::text(known));
@@ -166,28 +180,40 @@ impl Posterior {
         Table { heads: heads.map(String::from).to_vec(), rows: self.predictions.iter().map(row).collect() }
     }
 
+    /// Whether the targets are reached by enough points.
+    pub fn is_reliable(&self) -> bool {
+        self.missed.is_empty() && self.effective >= FEWEST
+    }
+
     /// Returns notes on undetermined and correlated parameters.
     pub fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        for (quantity, off) in &self.missed {
+            notes.push(format!(
+                "target of {quantity} not reached within the ranges: {off:.1} times tolerance and scatter off. The parameters are not determined"
+            ));
+        }
+        if self.missed.is_empty() && self.effective < FEWEST {
+            notes.push(format!(
+                "only {:.0} effective points: the parameters are not determined",
+                self.effective
+            ));
+        }
         let free: Vec<&str> =
             self.parameters.iter().filter(|m| m.is_undetermined()).map(|m| m.parameter.as_str()).collect();
-        let mut notes = vec![match free.as_slice() {
-            [] => "the targets determine all parameters".to_string(),
-            free => format!("not determined by the targets: {}", free.join(", ")),
-        }];
+        if self.is_reliable() && !free.is_empty() {
+            notes.push(format!("not determined by the targets: {}", free.join(", ")));
+        }
         let pair = |(a, b, r): &(String, String, f64)| format!("{a} and {b} {r:.2}");
-        if !self.correlations.is_empty() {
+        if self.is_reliable() && !self.correlations.is_empty() {
             let pairs: Vec<String> = self.correlations.iter().map(pair).collect();
-            notes.push(format!("correlated parameters: {}", pairs.join(", ")));
+            notes.push(format!("correlated, so determined only together: {}", pairs.join(", ")));
         }
         let poor: Vec<&str> =
             self.predictions.iter().filter(|p| p.explained < 0.5).map(|p| p.quantity.as_str()).collect();
         if !poor.is_empty() {
             notes
                 .push(format!("the emulator explains less than half of the variance of {}", poor.join(", ")));
-        }
-        if self.effective < ENOUGH / 10.0 {
-            notes
-                .push(format!("only {:.0} effective points: targets and ranges hardly meet", self.effective));
         }
         notes
     }
@@ -220,7 +246,7 @@ fn fitted<'a>(
     let emulator = Emulator::fit(&places, &values)?;
     let deviations = points.iter().filter_map(|p| {
         let [mean, deviation, _] = p.results[index];
-        Some(emulator.fitted(mean?, deviation?)?[1].powi(2))
+        Some(emulator.fitted_deviation(mean?, deviation?)?.powi(2))
     });
     let squares: Vec<f64> = deviations.collect();
     let scatter = match squares.len() {
@@ -231,16 +257,39 @@ fn fitted<'a>(
     Some(Fitted { column, target, emulator, scatter })
 }
 
+/// Deviation from the target and variance without the target's, in units of the quantity.
+fn deviation(fit: &Fitted<'_>, target: &Target, x: &[f64]) -> [f64; 2] {
+    let [mean, deviation] = fit.emulator.at(x);
+    let variance = fit.emulator.variance(mean, fit.scatter + deviation * deviation);
+    [target.value - fit.emulator.value(mean), variance]
+}
+
 /// Logarithm of the likelihood at `x`.
 fn likelihood(fits: &[Fitted<'_>], x: &[f64]) -> f64 {
     let one = |fit: &Fitted<'_>| {
         let target = fit.target?;
-        let [value, tolerance] = fit.emulator.fitted(target.value, target.tolerance)?;
-        let [mean, deviation] = fit.emulator.at(x);
-        let variance = tolerance * tolerance + fit.scatter + deviation * deviation;
-        Some(-0.5 * ((value - mean) * (value - mean) / variance + libm::log(variance)))
+        let [off, own] = deviation(fit, target, x);
+        let variance = target.tolerance * target.tolerance + own;
+        Some(-0.5 * (off * off / variance + libm::log(variance)))
     };
     fits.iter().filter_map(one).sum()
+}
+
+/// Targets that the posterior misses, with the weighted mean of their deviation in tolerances and scatter.
+fn missed(fits: &[Fitted<'_>], sampled: &Sampled) -> Vec<(String, f64)> {
+    let one = |fit: &Fitted<'_>| {
+        let target = fit.target?;
+        let off = |x: &Vec<f64>| {
+            let [mean, _] = fit.emulator.at(x);
+            let scatter = fit.emulator.variance(mean, fit.scatter);
+            let variance = target.tolerance * target.tolerance + scatter;
+            (target.value - fit.emulator.value(mean)).abs() / variance.sqrt()
+        };
+        let all: Vec<f64> = sampled.points.iter().map(off).collect();
+        let [mean, _] = moments(&all, &sampled.weights);
+        (mean > MISSED).then(|| (fit.column.head(), mean))
+    };
+    fits.iter().filter_map(one).collect()
 }
 
 /// Points of the prior with weights, again in the box of most weight until enough of them count.

@@ -68,10 +68,47 @@ fn correlated_parameters_are_reported() {
     seeded[1].random = true;
     let one = Posterior::of(&seeded, &points, &results, &[target_of_q()]).unwrap();
     assert_eq!(one.parameters.len(), 1);
-    assert!(Posterior::of(&factors, &points, &results, &[]).is_none());
-    assert!(Posterior::of(&factors, &points[..4], &results, &[target_of_q()]).is_none());
+    let few = Posterior::of(&factors, &points[..4], &results, &[target_of_q()]).unwrap_err();
+    assert_eq!(few, "q is constant, or has fewer than 6 values");
 }
 
 fn target_of_q() -> Target {
     Target { quantity: 0, value: 2.4, tolerance: 0.12 }
+}
+
+#[test]
+fn sign_and_size_of_target_do_not_matter() {
+    let (factors, mut points, results) = study();
+    // q = 1/(x + 0.1) is wide and positive, hence fitted by its logarithm.
+    for point in &mut points {
+        let x = point.values[0].unwrap();
+        point.results[0] = [Some(1.0 / (x + 0.1)), None, None];
+    }
+    let of = |value: f64, sign: f64| {
+        let mut points = points.clone();
+        points.iter_mut().for_each(|p| p.results[0][0] = p.results[0][0].map(|q| sign * q));
+        let target = Target { quantity: 0, value: sign * value, tolerance: 1.0 };
+        Posterior::of(&factors, &points, &results, &[target]).unwrap().parameters[0].clone()
+    };
+    for value in [2.0, 0.0] {
+        // Quantiles of exp(−(value − 1/(x + 0.1))²/2) on 0 to 2.
+        let density = |x: f64| (-0.5 * (value - 1.0 / (x + 0.1)).powi(2)).exp();
+        let grid: Vec<f64> = (0..20_000).map(|k| (k as f64 + 0.5) * 1e-4).collect();
+        let weights: Vec<f64> = grid.iter().map(|x| density(*x)).collect();
+        for (found, share) in [of(value, 1.0), of(value, -1.0)].iter().flat_map(|m| m.band.iter().zip(BAND)) {
+            let expected = quantile(&grid, &weights, share);
+            assert!((found - expected).abs() < 0.05, "{value}: {found} for {expected}");
+        }
+    }
+}
+
+#[test]
+fn target_out_of_reach_determines_nothing() {
+    let (factors, points, results) = study();
+    let target = Target { quantity: 0, value: 9.0, tolerance: 0.1 };
+    let posterior = Posterior::of(&factors, &points, &results, &[target]).unwrap();
+    assert!(!posterior.is_reliable(), "{:?}", posterior.missed);
+    let notes = posterior.notes();
+    assert!(notes[0].starts_with("target of q not reached within the ranges: "), "{notes:?}");
+    assert!(!notes.iter().any(|n| n.contains("determined by the targets")), "{notes:?}");
 }

@@ -227,6 +227,9 @@ fn source_of(document: &Document, index: usize, table: &QuantityTable) -> Result
             false => problem("at", Problem::no_effect("`take = \"at\"`")),
         };
     }
+    if is_at && table.from.is_some() {
+        return problem("from", Problem::conflict("`take = \"at\"`"));
+    }
     for (key, value) in [("at", table.at), ("from", table.from), ("since", table.since)] {
         if let Some(value) = value.filter(|v| !v.is_finite()) {
             return fault(key, &value.to_string(), "a finite number");

@@ -118,8 +118,13 @@ pub fn notes(analysis: &Analysis) -> Vec<String> {
             _ => {}
         }
     }
+    if let Some(reason) = &analysis.without_posterior {
+        notes.push(format!("no posterior: {reason}"));
+    }
     let count = analysis.points.iter().filter(|p| p.done > 0).count();
-    if analysis.sensitivities.iter().any(|s| s.rank_correlations.iter().any(Option::is_some)) {
+    if significant_correlation(count) < 1.0
+        && analysis.sensitivities.iter().any(|s| s.rank_correlations.iter().any(Option::is_some))
+    {
         notes.push(format!(
             "Rank correlations below {} ({count} cases) are not significant at the 5 % level",
             four_digits(significant_correlation(count))
@@ -208,7 +213,7 @@ pub fn printed_best(analysis: &Analysis) -> String {
     };
     let mut text = format!("\n{}\n{cases}", targets(analysis).aligned(1));
     if let Some(posterior) = &analysis.posterior {
-        text += &format!("\n{}\n", posterior.parameter_table().aligned(1));
+        text += &format!("\nPosterior:\n{}\n", posterior.parameter_table().aligned(1));
         text += &posterior.prediction_table().aligned(1);
         posterior.notes().iter().for_each(|note| text += &format!("note: {note}.\n"));
     }

@@ -106,6 +106,9 @@ pub fn front(outcome: &Outcome) -> String {
         let over = row.error_over_tolerance.map_or("–".into(), four_digits);
         format!("\"{}\" ({} s, {over})", row.case, cpu(row).map_or("–".into(), |s| format!("{s:.2}")))
     };
+    if outcome.front.is_empty() {
+        return "No Pareto front: no case has an error.".into();
+    }
     let cases: Vec<String> = outcome.front.iter().map(case).collect();
     format!("Pareto front, with CPU time and largest error in tolerances: {}.", cases.join(", "))
 }

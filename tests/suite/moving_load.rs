@@ -230,3 +230,33 @@ solid_step = 1
         assert!(outcome.code == 2 && outcome.stderr.contains(words), "{}", outcome.stderr);
     }
 }
+
+/// Unloaded elastic ground returns to its shape: forces of zero have no size to compare with.
+#[test]
+fn vanishing_loads_leave_nothing() {
+    let folder = Folder::new("moving_unloaded");
+    let scene = BEAM
+        .replace("[solid.dynamics]", "[solid.quasi_static]")
+        .replace("solid_step = \"1 ms\"", "solid_step = \"50 ms\"")
+        .replace("history_interval = \"5 ms\"", "history_interval = \"50 ms\"");
+    let out = folder.join("out").display().to_string();
+    let of = |name: &str, text: &str| {
+        let file = folder.write(name, text).display().to_string();
+        trackbed(["run", &file, "--out", &out, "--force"]).good();
+        Table::read(&folder.join("out/history.csv")).column("middle_u_z")
+    };
+    // The axle leaves after 0.5 of 0.6 s.
+    let middle = of("axle.toml", &scene);
+    let largest = middle.iter().fold(0.0_f64, |m, u| m.max(-u));
+    assert!(largest > 5e-3 && middle[middle.len() - 1].abs() < 1e-9 * largest, "{middle:?}");
+    let pulse = scene.replace(
+        "kind = \"moving\"\npath = [[0, 0, 0.5], [0, 20, 0.5]]",
+        "kind = \"point\"\nat = [0, 10, 0.5]\nhistory = { kind = \"table\", points = [[0, 1], [0.3, 0], [0.45, -1], [0.6, 0]] }",
+    );
+    let middle = of("pulse.toml", &pulse.replace("speed = \"40 m/s\"\n", ""));
+    assert!(
+        middle[6].abs() < 1e-9 * middle[0].abs() && middle[12].abs() < 1e-9 * middle[0].abs(),
+        "{middle:?}"
+    );
+    assert!((middle[9] / middle[0] + 1.0).abs() < 1e-6, "{middle:?}");
+}

@@ -7,7 +7,7 @@
 //! The first iteration uses the elastic matrix, as yielding exactly on the surface would depend on
 //! rounding.
 //!
-//! Convergence: residual at most `force_tolerance` of the forces (larger of |rhs| and |f|, all dofs), *and*
+//! Convergence: residual at most `force_tolerance` of the forces (largest of |rhs|, |f|, 1e-6 of |f| at the start, all dofs), *and*
 //! residual work on the last correction at most `energy_tolerance` of its maximum in the step.
 //!
 //! Line search: the residual work is halved (Crisfield 1991, vol. 1, section 9.2), or, for corrections
@@ -86,8 +86,14 @@ const MIN_STEP_LENGTH: f64 = 0.1;
 const MAX_STEP_LENGTH: f64 = 4.0;
 const LINE_SEARCH_TOLERANCE: f64 = 0.5;
 const MAX_LINE_SEARCHES: u32 = 5;
+/// Least reference force, over the internal force at the start of the step: loads may vanish.
+const LEAST_REFERENCE: f64 = 1e-6;
 /// Relative residual of an aborted iteration.
 const DIVERGENCE_LIMIT: f64 = 1e6;
+
+fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
 
 /// Inertia fraction in the force norm, against velocity rounding.
 pub(crate) const INERTIA: f64 = 1e-3;
@@ -104,6 +110,8 @@ pub(crate) struct Newton {
     pub statistics: Statistics,
     pub report: StepReport,
     stalls: u32,
+    /// Least reference force of the step [N].
+    least: f64,
     base: Vec<f64>,
     correction: Vec<f64>,
     product: Vec<f64>,
@@ -128,6 +136,7 @@ impl Newton {
             statistics: Statistics::default(),
             report,
             stalls: 0,
+            least: 0.0,
             base: vec![0.0; n],
             correction: vec![0.0; n],
             product: vec![0.0; n],
@@ -144,6 +153,7 @@ impl Newton {
         self.report.iterations = 0;
         self.du.fill(0.0);
         self.evaluate(model, problem, 0.0)?;
+        self.least = LEAST_REFERENCE * norm(&self.force.force);
         let moving = problem.fixed.iter().any(|f| *f != 0.0);
         let mut size = self.record_relative_residual(model, problem);
         if !moving && size <= self.options.force_tolerance {
@@ -280,9 +290,8 @@ impl Newton {
     }
 
     fn record_relative_residual(&mut self, model: &Model, problem: &Problem<'_>) -> f64 {
-        let square = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
-        let given = problem.forces.unwrap_or_else(|| square(problem.rhs).sqrt());
-        let forces = given.max(square(&self.force.force).sqrt());
+        let given = problem.forces.unwrap_or_else(|| norm(problem.rhs));
+        let forces = given.max(norm(&self.force.force)).max(self.least);
         let residual = self.residual_norm(model);
         let size = if residual == 0.0 { 0.0 } else { residual / forces };
         self.report.residuals.push(size);

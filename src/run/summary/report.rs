@@ -115,7 +115,7 @@ impl Summary {
         for f in &self.floating {
             let [x, y, z] = f.mean_contact_force;
             lines.push(format!(
-                "{}: mean speed {:.3} m/s, heading {:.2} degrees; mean contact force {x:.3e} N along x, {y:.3e} N along y, {z:.3e} N along z",
+                "{}: mean speed {:.3} m/s, heading {:.2} degrees; mean contact force of the recorded rows {x:.3e} N along x, {y:.3e} N along y, {z:.3e} N along z",
                 f.name,
                 f.mean_speed,
                 f.rotation[2].to_degrees()

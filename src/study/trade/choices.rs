@@ -61,8 +61,11 @@ fn grain_step(scene: &Scene) -> Option<Choice> {
         Some(step) => ("time.grain_step", step.si),
         None => ("time.grain_step_fraction", scene.time.grain_step_fraction.unwrap_or(0.8)),
     };
-    let set = |factor: f64| format!("{key}={:?}", factor * own);
-    Some(Choice { name: "grain step", values: vec![one("half", set(0.5))], finest: vec![set(0.25)] })
+    let set = |parts: u64| {
+        let steps = scene.time.steps.map(|n| format!("time.steps={}", n.saturating_mul(parts)));
+        std::iter::once(format!("{key}={:?}", own / parts as f64)).chain(steps).collect::<Vec<String>>()
+    };
+    Some(Choice { name: "grain step", values: vec![("half".to_string(), set(2))], finest: set(4) })
 }
 
 /// Of all materials, so that ratios keep their values.
@@ -172,7 +175,8 @@ fn element_order(scene: &Scene) -> Option<Choice> {
 }
 
 fn integration(scene: &Scene) -> Option<Choice> {
-    let own = scene.solid.as_ref()?.integration;
+    let solid = scene.solid.as_ref().filter(|solid| solid.order != Some(Order::Linear))?;
+    let own = solid.integration;
     let all =
         [("reduced", Integration::Reduced), ("irons14", Integration::Irons14), ("full", Integration::Full)];
     let others = all.into_iter().filter(|(_, rule)| *rule != own);
@@ -230,12 +234,25 @@ fn numerical_damping(scene: &Scene) -> Option<Choice> {
     Some(Choice { name: "time integration", values: vec![one(label, set)], ..Choice::default() })
 }
 
-/// Where `time.end` gives the duration.
+/// Longer steps only if they divide the duration, so that all runs end together.
 fn solid_step(scene: &Scene) -> Option<Choice> {
-    let own = scene.time.solid_step.filter(|_| scene.time.steps.is_none())?.si;
-    let set = |factor: f64| format!("time.solid_step={:?}", factor * own);
-    let values = vec![one("2 times", set(2.0)), one("4 times", set(4.0))];
-    Some(Choice { name: "solid step", values, finest: vec![set(0.5)] })
+    let own = scene.time.solid_step?.si;
+    let count = match (scene.time.steps, scene.time.end) {
+        (Some(steps), _) => steps as f64,
+        (None, Some(end)) => end.si / own,
+        (None, None) => return None,
+    };
+    let set = |factor: f64| {
+        let steps = scene.time.steps.map(|_| format!("time.steps={:.0}", count / factor));
+        std::iter::once(format!("time.solid_step={:?}", factor * own)).chain(steps).collect::<Vec<String>>()
+    };
+    let divides = |factor: &&f64| {
+        let steps = count / **factor;
+        (steps - steps.round()).abs() < 1e-6 * steps && steps.round() >= 1.0
+    };
+    let all = [2.0, 4.0, 5.0];
+    let values = all.iter().filter(divides).take(2).map(|f| (format!("{f} times"), set(*f))).collect();
+    Some(Choice { name: "solid step", values, finest: set(0.5) })
 }
 
 fn scheme(scene: &Scene) -> Option<Choice> {

@@ -18,6 +18,7 @@ use super::Check;
 
 /// File of the study in its directory.
 pub const FILE: &str = "trade.toml";
+const MOST_SEEDS: u64 = 1000;
 /// Seeds of scenes with random grains.
 const SEEDS: u64 = 3;
 
@@ -52,6 +53,16 @@ impl Trade {
     pub fn new(request: &Request<'_>, check: Check<'_>) -> Result<Trade, Failure> {
         let Request { scene: file, set, seeds, tolerance, quiet } = *request;
         let mut document = Document::open(file)?;
+        if document.has("scene") {
+            let found = format!("{}: found a study with --trade", file.display());
+            return Err(Failure::Input(format!("{found}, expected a scene, or no --trade")));
+        }
+        if let Some(t) = tolerance.filter(|t| !(*t > 0.0 && *t <= 1.0)) {
+            return Err(Failure::Input(format!("--tolerance: found {t}, expected above 0, at most 1")));
+        }
+        if let Some(n) = seeds.filter(|n| *n > MOST_SEEDS) {
+            return Err(Failure::Input(format!("--seeds: found {n}, expected at most {MOST_SEEDS}")));
+        }
         document.set_all(set)?;
         let scene = document.scene()?;
         check(file, set)?;

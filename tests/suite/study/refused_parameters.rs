@@ -53,10 +53,14 @@ fn rejects_bad_samples() {
     refused("\"scene.toml\"\n", "\"scene.toml\"\ntolerance = 0.1", line);
     let line = "study.toml:17: quantity.0.exact: found together with `parameter`, expected only one of them";
     refused("\"ball_z\"\n", "\"ball_z\"\nexact = 1.0", line);
-    let ten: String =
-        (0..10).map(|k| format!("[[parameter]]\nname = \"p{k}\"\nkey = \"x\"\nrange = [0, 1]\n")).collect();
+    let ten: String = (0..10)
+        .map(|k| format!("[[parameter]]\nname = \"p{k}\"\nkey = \"x{k}\"\nrange = [0, 1]\n"))
+        .collect();
     let line = "study.toml:7: parameter: found 11 parameters, expected at most 10 with method = \"sobol\"";
     refused("unit = \"ms\"\n", &format!("unit = \"ms\"\n{ten}"), line);
+    let line = "study.toml:14: parameter.1.key: found \"time.end\" twice, expected distinct keys";
+    let twice = "unit = \"ms\"\n[[parameter]]\nname = \"again\"\nkey = \"time.end\"\nrange = [0, 1]\n";
+    refused("unit = \"ms\"\n", twice, line);
 }
 
 #[test]

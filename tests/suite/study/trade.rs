@@ -83,3 +83,45 @@ fn scenes_without_results_are_rejected() {
     assert!(outcome.code == 2 && outcome.stderr.contains("--trade"), "{}", outcome.stderr);
     assert!(!folder.join("out").exists());
 }
+
+/// Runs of other steps end together: errors come from the step alone.
+#[test]
+fn steps_keep_the_duration() {
+    let folder = Folder::new("trade_steps");
+    let scene = SWING.replace("end = \"1 ms\"", "steps = 10")
+        + "\n[[measure]]\nname = \"near\"\nbox = [[-1, -1, -1], [1, 1, 1]]\n";
+    let file = folder.write("scene.toml", &scene).display().to_string();
+    let out = folder.join("out").display().to_string();
+    trackbed(["study", &file, "--trade", "--out", &out]).good();
+    let rows = table(&folder.join("out/study.csv"));
+    let steps = numbers(&rows, "steps");
+    let at = |case: &str| steps[rows.iter().position(|r| r["case"] == case).unwrap()];
+    assert_eq!([at("reference"), at("base"), at("grain step=half")], [40.0, 10.0, 20.0]);
+    // 50 steps of 0.02 s: 2 and 5 divide them, 4 does not.
+    let footing = repository().join("inputs/solid/footing.toml").display().to_string();
+    let out = folder.join("footing").display().to_string();
+    let set = ["solid.order=linear", "solid.block.x.counts=[2, 2]", "solid.block.z.counts=[3]"];
+    let set: Vec<&str> = set.iter().flat_map(|set| ["--set", *set]).collect();
+    trackbed(["study", &footing, "--trade", "--out", &out].iter().chain(&set)).good();
+    let rows = table(&folder.join("footing/study.csv"));
+    let cases: Vec<&str> = rows.iter().map(|r| r["case"].as_str()).collect();
+    let steps: Vec<&&str> = cases.iter().filter(|c| c.starts_with("solid step")).collect();
+    assert_eq!(steps, [&"solid step=2 times", &"solid step=5 times"]);
+    // Linear elements have one rule.
+    assert!(!cases.iter().any(|c| c.contains("integration")), "{cases:?}");
+}
+
+#[test]
+fn options_of_the_other_kind_are_rejected() {
+    let folder = Folder::new("trade_kind");
+    let file = folder.write("scene.toml", SWING).display().to_string();
+    let study = folder.write("study.toml", "scene = \"scene.toml\"\n").display().to_string();
+    let rejected = |arguments: &[&str], words: &str| {
+        let outcome = trackbed(arguments);
+        assert!(outcome.code == 2 && outcome.stderr.contains(words), "{}", outcome.stderr);
+    };
+    rejected(&["study", &file], "scene.toml: found a scene, expected a study, or the option --trade");
+    rejected(&["study", &study, "--trade"], "study.toml: found a study with --trade, expected a scene");
+    rejected(&["study", &file, "--trade", "--tolerance", "0"], "--tolerance: found 0, expected above 0");
+    rejected(&["study", &file, "--trade", "--seeds", "5000"], "--seeds: found 5000, expected at most 1000");
+}
