@@ -23,7 +23,7 @@ const ROUNDS: usize = 4;
 const OUTSIDE: f64 = 1e-3;
 /// Ratio to the standard deviation of the prior above which a parameter is undetermined.
 const UNDETERMINED: f64 = 0.8;
-/// Mean deviation of a target above which it is not reached.
+/// Median deviation of a target above which it is not reached.
 const MISSED: f64 = 2.5;
 /// Correlation from which a pair of parameters is reported.
 const CORRELATED: f64 = 0.4;
@@ -275,7 +275,7 @@ fn likelihood(fits: &[Fitted<'_>], x: &[f64]) -> f64 {
     fits.iter().filter_map(one).sum()
 }
 
-/// Targets that the posterior misses, with the weighted mean of their deviation in tolerances and scatter.
+/// Targets that the posterior misses, with the median of their deviation in tolerances and scatter.
 fn missed(fits: &[Fitted<'_>], sampled: &Sampled) -> Vec<(String, f64)> {
     let one = |fit: &Fitted<'_>| {
         let target = fit.target?;
@@ -286,8 +286,8 @@ fn missed(fits: &[Fitted<'_>], sampled: &Sampled) -> Vec<(String, f64)> {
             (target.value - fit.emulator.value(mean)).abs() / variance.sqrt()
         };
         let all: Vec<f64> = sampled.points.iter().map(off).collect();
-        let [mean, _] = moments(&all, &sampled.weights);
-        (mean > MISSED).then(|| (fit.column.head(), mean))
+        let median = quantile(&all, &sampled.weights, 0.5);
+        (median > MISSED).then(|| (fit.column.head(), median))
     };
     fits.iter().filter_map(one).collect()
 }

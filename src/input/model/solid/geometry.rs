@@ -110,16 +110,16 @@ pub fn geometry(solid: &Table<Solid>) -> Result<Geometry, Failure> {
 }
 
 /// Gives the elements of each region its material; later regions count.
-fn assign_regions(solid: &Table<Solid>, mesh: &mut Mesh) -> Result<(), ReadError> {
+fn assign_regions(solid: &Table<Solid>, mesh: &mut Mesh) -> Result<(), SceneError> {
     for region in solid.rows("region", &solid.region) {
         let [low, high] = region.bounds.map(|corner| vector(&corner));
         if (0..3).any(|d| low[d] >= high[d]) {
-            return Err(region.error("box", format!("{low:?} to {high:?}"), "low below high").into());
+            return Err(region.error("box", format!("{low:?} to {high:?}"), "low below high"));
         }
         if solid.material.iter().all(|m| m.id != region.material) {
             let ids: Vec<String> = solid.material.iter().map(|m| m.id.to_string()).collect();
             let expected = format!("the `id` of a [[solid.material]]: {}", ids.join(", "));
-            return Err(region.error("material", region.material.to_string(), expected).into());
+            return Err(region.error("material", region.material.to_string(), expected));
         }
         let is_inside = |mesh: &Mesh, e: usize| {
             let centre = mesh.element_centre(e);
@@ -127,7 +127,7 @@ fn assign_regions(solid: &Table<Solid>, mesh: &mut Mesh) -> Result<(), ReadError
         };
         let inside: Vec<usize> = (0..mesh.element_count()).filter(|e| is_inside(mesh, *e)).collect();
         if inside.is_empty() {
-            return Err(region.error("box", "no element", "the centre of at least one element").into());
+            return Err(region.error("box", "no element", "the centre of at least one element"));
         }
         inside.into_iter().for_each(|e| mesh.materials[e] = region.material);
     }
