@@ -126,6 +126,23 @@ fn wrong_keys_are_named() {
     rejected("kind = \"moving\"", "kind = \"point\"\nat = [0, 1, 0.5]", "path: found");
 }
 
+#[test]
+fn axles_that_never_arrive_are_implausible() {
+    let warned = |new: &str, words: &str| {
+        let folder = Folder::new("moving_late");
+        let scene = BEAM.replace("speed = \"40 m/s\"", new);
+        let file = folder.write("scene.toml", &scene).display().to_string();
+        let said = trackbed(["check", &file]).good().stdout;
+        assert!(said.contains(words), "{said}");
+    };
+    warned(
+        "speed = 40\nstart = 2",
+        "solid.load.0.start: found 2 s, the run ends at 0.6 s, expected the first axle",
+    );
+    warned("speed = 4000", "solid.load.0.speed: found 4000 m/s, 5.0 steps along the path, expected 8 steps");
+    warned("speed = 4000", "solid.load.0.speed: found 4000 m/s, expected 0.1 to 300 m/s (unusual)");
+}
+
 /// Soft half-space: the largest deflection is where the load moves with the Rayleigh wave, 38.0 m/s
 /// (inputs/studies/critical_speed.toml with linear elements).
 #[test]
