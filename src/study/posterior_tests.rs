@@ -5,11 +5,11 @@ fn factor(name: &str) -> Factor {
     Factor { name: name.into(), range: [0.0, 2.0], ..Factor::default() }
 }
 
-/// Uniform noise of standard deviation 0.05 on q = 2 x; p = x + y.
+/// Uniform noise of standard deviation 0.2 on q = 2 x; p = x + y.
 fn study() -> (Vec<Factor>, Vec<Point>, Vec<Column>) {
     let of = |(k, u): (usize, Vec<f64>)| {
         let (x, y) = (2.0 * u[0], 2.0 * u[1]);
-        let noise = 0.05 * 12.0_f64.sqrt() * (Random::new(3, k as u64).uniform() - 0.5);
+        let noise = 0.2 * 12.0_f64.sqrt() * (Random::new(3, k as u64).uniform() - 0.5);
         let results = vec![[Some(2.0 * x + noise), None, None], [Some(x + y), None, None]];
         Point { values: vec![Some(x), Some(y)], results, ..Point::default() }
     };
@@ -24,18 +24,18 @@ fn linear_model_has_normal_posterior() {
     let target = Target { quantity: 0, value: 2.4, tolerance: 0.12 };
     let posterior = Posterior::of(&factors, &points, &results, &[target]).unwrap();
     let [x, y] = posterior.parameters.as_slice() else { panic!("two parameters") };
-    // Mean 2.4/2, standard deviation √(0.12² + 0.05²)/2 = 0.065.
-    let deviation = 0.13 / 2.0;
-    assert!((x.median - 1.2).abs() < 0.02, "{x:?}");
+    // Mean 2.4/2, standard deviation √(0.12² + 0.2²)/2 = 0.117.
+    let deviation = 0.12_f64.hypot(0.2) / 2.0;
+    assert!((x.median - 1.2).abs() < 0.05, "{x:?}");
     for (found, z) in x.band.iter().zip([-1.645, 1.645]) {
-        assert!((found - (1.2 + z * deviation)).abs() < 0.025, "{x:?}");
+        assert!((found - (1.2 + z * deviation)).abs() < 0.06, "{x:?}");
     }
-    assert!((x.deviation - deviation / (2.0 / 12.0_f64.sqrt())).abs() < 0.02, "{x:?}");
+    assert!((x.deviation - deviation / (2.0 / 12.0_f64.sqrt())).abs() < 0.03, "{x:?}");
     assert!(!x.is_undetermined() && y.is_undetermined(), "{y:?}");
     assert!((y.deviation - 1.0).abs() < 0.03, "{y:?}");
     // p = x + y keeps the uniform band of y: 1.2 + 0.1 to 1.2 + 1.9.
     let p = &posterior.predictions[1];
-    assert!((p.band[0] - 1.3).abs() < 0.06 && (p.band[1] - 3.1).abs() < 0.06, "{p:?}");
+    assert!((p.band[0] - 1.3).abs() < 0.1 && (p.band[1] - 3.1).abs() < 0.1, "{p:?}");
     assert!(p.prior[1] > 3.3 && p.explained > 0.99, "{p:?}");
     assert_eq!(posterior.notes()[0], "not determined by the targets: y");
 }
