@@ -240,7 +240,7 @@ pub struct StudyArgs {
     /// Curve given for calibration, for null models beside the predictions.
     #[arg(long, value_name = "CSV", requires = "score")]
     pub given: Option<PathBuf>,
-    /// Results directory [default: results/NAME of the study file].
+    /// Results directory [default: results/NAME of the study file, with --trade results/NAME_trade].
     #[arg(long)]
     pub out: Option<PathBuf>,
     /// Threads of each run [default: cores divided by simultaneous runs].

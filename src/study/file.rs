@@ -1,6 +1,8 @@
 //! Study file: TOML; unknown keys are errors.
 
 use serde::Deserialize;
+use serde::de::{self, Deserializer, SeqAccess, Visitor};
+use std::fmt;
 use std::path::PathBuf;
 
 /// Study.
@@ -232,23 +234,30 @@ pub struct QuantityTable {
     pub tolerance: Option<f64>,
 }
 
-/// One or several columns.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(untagged)]
-pub enum Columns {
-    /// One.
-    One(String),
-    /// Several.
-    Sum(Vec<String>),
-}
+/// Names of one or several columns.
+#[derive(Clone, Debug)]
+pub struct Columns(pub Vec<String>);
 
-impl Columns {
-    /// Returns the names.
-    pub fn names(&self) -> &[String] {
-        match self {
-            Columns::One(name) => std::slice::from_ref(name),
-            Columns::Sum(names) => names,
+impl<'de> Deserialize<'de> for Columns {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Columns, D::Error> {
+        struct Names;
+        impl<'de> Visitor<'de> for Names {
+            type Value = Columns;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a column or a list of columns")
+            }
+            fn visit_str<E: de::Error>(self, name: &str) -> Result<Columns, E> {
+                Ok(Columns(vec![name.to_string()]))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Columns, A::Error> {
+                let mut names = Vec::new();
+                while let Some(name) = list.next_element()? {
+                    names.push(name);
+                }
+                Ok(Columns(names))
+            }
         }
+        deserializer.deserialize_any(Names)
     }
 }
 

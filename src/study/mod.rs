@@ -123,12 +123,17 @@ pub fn execute(file: &Path, options: &Options, check: Check<'_>) -> Result<Finis
 /// As [`execute`]; a scene without settings or results to compare.
 pub fn trade(request: &Request<'_>, options: &Options, check: Check<'_>) -> Result<Finished, Failure> {
     let trade = Trade::new(request, check)?;
-    let dir = options.out.clone().unwrap_or_else(|| run::default_folder(request.scene, request.set));
+    let dir = options.out.clone().unwrap_or_else(|| {
+        // Beside the results of the scene.
+        let mut name = run::default_folder(request.scene, request.set).into_os_string();
+        name.push("_trade");
+        name.into()
+    });
     let absolute = std::path::absolute(request.scene).map_err(|e| Failure::Input(e.to_string()))?;
     let file = dir.join(trade::FILE);
     let document = Document::parse(Path::new(trade::FILE), trade.text(request.scene))?;
     let origin = Origin { study: run::quoted(&file), written: Some((file, trade.text(&absolute))) };
-    // Checked with the plan.
+    // `Trade::new` has checked each setting.
     let mut finished = perform(&document, &dir, &origin, options, &|_, _| Ok(()))?;
     finished.text += &trade.left_out.iter().map(|note| format!("left out: {note}\n")).collect::<String>();
     Ok(finished)

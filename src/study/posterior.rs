@@ -53,7 +53,7 @@ pub struct Marginal {
     pub parameter: String,
     /// Range of the prior.
     pub range: [f64; 2],
-    /// Median, and 5 % and 95 % quantile.
+    /// Median.
     pub median: f64,
     /// 5 % and 95 % quantile.
     pub band: [f64; 2],

@@ -215,7 +215,7 @@ fn source_of(document: &Document, index: usize, table: &QuantityTable) -> Result
             "the name of a CSV table of a run, such as \"cycles.csv\"",
         );
     }
-    let columns = table.column.as_ref().map(|column| column.names().to_vec()).unwrap_or_default();
+    let columns = table.column.as_ref().map(|columns| columns.0.clone()).unwrap_or_default();
     if columns.is_empty() {
         return problem("column", Problem::missing("a column of the table"));
     }

@@ -1,11 +1,11 @@
-//! Settings that trade accuracy for speed, one function each.
+//! Settings that trade accuracy for speed: a function each, and a line of `ALL`.
 
 use trackbed_input::scene::Scene;
 use trackbed_input::scene::coupling::{FacesName, SchemeName, Substeps, TransferTable};
 use trackbed_input::scene::grains::GrainShape;
 use trackbed_input::scene::solid::{Integration, MaterialModel, NewtonVariant, Order};
 
-/// Solid of spheres of a sieve size over that of clumps, for equal volume in total.
+/// Number of spheres over clumps of the same sieve sizes, for equal volume in total.
 const SPHERE_COUNT: f64 = 0.73;
 /// Size of coarser stones.
 const COARSER: f64 = 1.6;
@@ -21,32 +21,35 @@ pub struct Choice {
     pub finest: Vec<String>,
 }
 
+/// All settings, in the order of the table.
+const ALL: &[fn(&Scene) -> Option<Choice>] = &[
+    grain_step,
+    contact_stiffness,
+    mass_factor,
+    restitution,
+    shape,
+    stone_size,
+    deposition_stiffness,
+    load_frequency,
+    servo_gain,
+    element_order,
+    integration,
+    mesh,
+    newton,
+    reduction,
+    numerical_damping,
+    solid_step,
+    scheme,
+    window,
+    theta,
+    contact_faces,
+    transfer,
+    jump,
+];
+
 /// Returns the settings that a scene has.
 pub fn of(scene: &Scene) -> Vec<Choice> {
-    let all: [fn(&Scene) -> Option<Choice>; 20] = [
-        grain_step,
-        contact_stiffness,
-        mass_factor,
-        restitution,
-        shape,
-        stone_size,
-        deposition_stiffness,
-        load_frequency,
-        servo_gain,
-        element_order,
-        integration,
-        mesh,
-        newton,
-        reduction,
-        numerical_damping,
-        solid_step,
-        scheme,
-        window,
-        theta,
-        contact_faces,
-    ];
-    let more: [fn(&Scene) -> Option<Choice>; 2] = [transfer, jump];
-    all.iter().chain(&more).filter_map(|choice| choice(scene)).filter(|c| !c.values.is_empty()).collect()
+    ALL.iter().filter_map(|choice| choice(scene)).filter(|c| !c.values.is_empty()).collect()
 }
 
 fn one(label: impl Into<String>, set: impl Into<String>) -> (String, Vec<String>) {

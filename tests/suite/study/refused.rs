@@ -46,6 +46,8 @@ fn keys_and_values_of_a_study() {
     refused("file = \"history.csv\"\ncolumn = \"ball_z\"\nscale", path, line);
     let line = "study.toml:10: quantity.0.at: found nothing, expected a number with `take = \"at\"`";
     refused("column = \"ball_z\"\nscale", "column = \"ball_z\"\ntake = \"at\"\nscale", line);
+    let line = "study.toml:13: quantity.0.column: found integer 5, expected a column or a list of columns";
+    refused("column = \"ball_z\"\nscale", "column = 5\nscale", line);
     let line = "study.toml:14: quantity.0.at: found, but it has no effect without `take = \"at\"`";
     refused("column = \"ball_z\"\nscale", "column = \"ball_z\"\nat = 1\nscale", line);
     let line = "study.toml:14: quantity.0.against: found, but it has no effect without `take = \"curve\"`, `at`, `from` or `since`";
