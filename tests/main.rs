@@ -37,6 +37,7 @@ mod suite {
     mod messages;
     mod moving_load;
     mod mumps;
+    mod nets;
     mod observe;
     mod packings;
     mod periodic;

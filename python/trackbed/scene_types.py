@@ -187,6 +187,14 @@ MaterialModel = Literal["elastic", "mohr_coulomb", "drucker_prager", "von_mises"
 Motion = Literal["x", "y", "z", "rx", "ry", "rz"]
 
 
+# Side of a net.
+# "start": Start of `along`.
+# "end": End of `along`.
+# "left": Start of `across`.
+# "right": End of `across`.
+NetSide = Literal["start", "end", "left", "right"]
+
+
 # Which matrix the iteration takes.
 # "full": Consistent tangent.
 # "modified": Tangent of the step's start.
@@ -995,7 +1003,7 @@ class Grains(TypedDict, total=False):
     # Thickness over diameter; > 0, < 1; with `"disk"`; not with `floes`.
     aspect: Float
 
-    # Name of a `[[bond]]`; default none; with `"bonded"` (needed), polyhedral `floes`.
+    # Name of a `[[bond]]`; default none; with `"bonded"` (needed), polyhedral `floes`, `net`.
     bond: str
 
     # Number of grains; or `solid_fraction`, `target_height`, `target_mass`; 1–10,000,000; with `fill`, `region`, only an `inlet`
@@ -1034,6 +1042,9 @@ class Grains(TypedDict, total=False):
 
     # Name in reports.
     name: Required[str]
+
+    # Net or geogrid of bonded spheres; or another source.
+    net: Net
 
     # CSV file as of `output.packing`; or another source; columns `x, y, z, r` or `x, y, z, qw, qx, qy, qz, scale, stone` (disks:
     # diameter, 0).
@@ -1365,6 +1376,34 @@ class Mount(TypedDict, total=False):
 
     # Stiffness along x, y, z, 0 along held axes [N/m]; or `frequency`; ≥ 0.
     stiffness: Quantities
+
+
+class Net(TypedDict, total=False):
+    """Rectangular meshes of spheres along ribs. Groups of equal geometry and bond form one net. Sides: `"start"`, `"end"` along; `"left"`, `"right"` across."""
+
+    # Vector of the second side [m]; with meshes across.
+    across: Quantities
+
+    # Vector of the first side [m].
+    along: Required[Quantities]
+
+    # Corner between `"start"` and `"left"` [m].
+    corner: Required[Quantities]
+
+    # Numbers of meshes along and across; ≥ 1, ≥ 0 (0: one strand).
+    meshes: Required[Integers]
+
+    # Sides that the group consists of; default all spheres.
+    only: Sequence[NetSide]
+
+    # Radius of spheres [m]; > 0, ≤ half their distance.
+    radius: Required[Quantity]
+
+    # Spheres per rib, one node included; default 1; 1–100.
+    spheres_per_rib: Integer
+
+    # Sides left out; default none.
+    without: Sequence[NetSide]
 
 
 class Newton(TypedDict, total=False):

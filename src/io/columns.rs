@@ -210,6 +210,7 @@ pub mod history {
         RELEASED_BY_BREAKS: Scalar "released_by_breaks" "J" "energy released by broken bonds";
         GROUP: Vector "<group>" "m" "mean position of a recorded group";
         GROUP_FORCE: Vector "<group>_force" "N" "force of bonds and contacts on a recorded group";
+        GROUP_TENSION: Scalar "<group>_tension" "N" "largest tension in the bonds of a recorded net";
         SUPPORT_REACTION: Vector "<support>_reaction" "N" "force of a named support on the solid";
         PROBE_U: Vector "<probe>_u" "m" "displacement of an observed node or point";
         PROBE_V: Vector "<probe>_v" "m/s" "velocity of an observed node or point, or mean of observed grains";

@@ -47,6 +47,11 @@ impl<S: System> Recorder<S> for Groups {
             let name = &part.groups.names[group as usize];
             row.vector(history::GROUP.of(name), sum / count.max(1.0));
             row.vector(history::GROUP_FORCE.of(name), dem::measure::force_on(model, state, of));
+            if part.groups.nets.iter().any(|net| net.part == group) {
+                let bonds = dem::measure::bond_records(model, state);
+                let tension = bonds.iter().filter(|r| of(r.a) || of(r.b)).map(|r| r.tension);
+                row.put(history::GROUP_TENSION.of(name), tension.fold(0.0, f64::max));
+            }
         }
     }
 }

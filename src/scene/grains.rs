@@ -30,6 +30,8 @@ pub struct Grains {
     pub floes: Option<Floes>,
     /// Pile or cone, a polyhedron; or another source.
     pub frustum: Option<Frustum>,
+    /// Net or geogrid of bonded spheres; or another source.
+    pub net: Option<Net>,
     /// Container with grains at random; or another source.
     pub region: Option<Region>,
     /// Solid fraction, 0.3 at random positions; or `count`; > 0, < 1; with `region`; not with `growth`.
@@ -57,7 +59,7 @@ pub struct Grains {
     /// Seed of sizes, positions, orientations; default 1.
     #[serde(default = "one")]
     pub seed: u64,
-    /// Name of a `[[bond]]`; default none; with `"bonded"` (needed), polyhedral `floes`.
+    /// Name of a `[[bond]]`; default none; with `"bonded"` (needed), polyhedral `floes`, `net`.
     pub bond: Option<String>,
     /// Without rotation, 0 during deposition [m/s]; default free.
     pub prescribed_velocity: Option<[Quantity<Velocity>; 3]>,
@@ -141,6 +143,44 @@ pub struct LatticeFill {
     pub high: Option<[Quantity<Length>; 3]>,
     /// Numbers of columns, rows, layers; or `high`.
     pub counts: Option<[usize; 3]>,
+}
+
+/// Rectangular meshes of spheres along ribs. Groups of equal geometry and bond form one net. Sides: `"start"`, `"end"` along; `"left"`, `"right"` across.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Net {
+    /// Corner between `"start"` and `"left"` [m].
+    pub corner: [Quantity<Length>; 3],
+    /// Vector of the first side [m].
+    pub along: [Quantity<Length>; 3],
+    /// Vector of the second side [m]; with meshes across.
+    pub across: Option<[Quantity<Length>; 3]>,
+    /// Numbers of meshes along and across; ≥ 1, ≥ 0 (0: one strand).
+    pub meshes: [usize; 2],
+    /// Spheres per rib, one node included; default 1; 1–100.
+    pub spheres_per_rib: Option<usize>,
+    /// Radius of spheres [m]; > 0, ≤ half their distance.
+    pub radius: Quantity<Length>,
+    /// Sides that the group consists of; default all spheres.
+    #[serde(default)]
+    pub only: Vec<NetSide>,
+    /// Sides left out; default none.
+    #[serde(default)]
+    pub without: Vec<NetSide>,
+}
+
+/// Side of a net.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum NetSide {
+    /// Start of `along`.
+    Start,
+    /// End of `along`.
+    End,
+    /// Start of `across`.
+    Left,
+    /// End of `across`.
+    Right,
 }
 
 /// A field of ice floes: prisms from the Voronoi cells of random sites in a box, each made smaller about its centroid; or round ones.

@@ -65,12 +65,14 @@ pub struct BondInput {
     pub stiffness: f64,
     /// Face, of a [`FaceBond`].
     pub face: Option<Face>,
+    /// Length without tension, above 0 [m]; by default the initial distance of the centres.
+    pub length: Option<f64>,
 }
 
 impl BondInput {
     /// Bond with unit factors.
     pub fn new(a: usize, b: usize, kind: usize) -> BondInput {
-        BondInput { a, b, kind, tension: 1.0, shear: 1.0, stiffness: 1.0, face: None }
+        BondInput { a, b, kind, tension: 1.0, shear: 1.0, stiffness: 1.0, face: None, length: None }
     }
 }
 
@@ -168,7 +170,11 @@ pub fn resolve(
                 }
                 (false, Some(_)) => return Err(error("its kind has no face".into())),
             }
-            Ok(constants(kind, b, p, q, length))
+            let free = b.length.unwrap_or(length);
+            if !(free > 0.0 && free.is_finite()) {
+                return Err(error("its length without tension must be above 0 and finite".into()));
+            }
+            Ok(constants(kind, b, p, q, free))
         })
         .collect()
 }

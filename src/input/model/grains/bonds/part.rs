@@ -22,6 +22,7 @@ struct Made {
     bodies: [usize; 2],
     kind: usize,
     face: Option<Face>,
+    length: Option<f64>,
 }
 
 /// Rule that bonds pairs, with strength variation.
@@ -70,7 +71,7 @@ pub struct BondRegion {
 impl Made {
     fn bond(&self) -> BondInput {
         let [a, b] = self.bodies;
-        BondInput { face: self.face, ..BondInput::new(a, b, self.kind) }
+        BondInput { face: self.face, length: self.length, ..BondInput::new(a, b, self.kind) }
     }
 }
 
@@ -104,12 +105,17 @@ impl BondPart {
 
     /// Adds a bond within a bonded grain.
     pub fn join_stone(&mut self, bodies: [usize; 2], kind: usize) {
-        self.made.push(Made { bodies, kind, face: None });
+        self.made.push(Made { bodies, kind, face: None, length: None });
     }
 
     /// Adds a bond that fills a face.
     pub fn join_face(&mut self, bodies: [usize; 2], kind: usize, face: Face) {
-        self.made.push(Made { bodies, kind, face: Some(face) });
+        self.made.push(Made { bodies, kind, face: Some(face), length: None });
+    }
+
+    /// Adds a bond of a net with its length without tension [m], which settling does not change.
+    pub fn join_net(&mut self, bodies: [usize; 2], kind: usize, length: f64) {
+        self.made.push(Made { bodies, kind, face: None, length: Some(length) });
     }
 
     /// Returns the `[[bond]]` index of a group. `faces`: bonds fill faces.

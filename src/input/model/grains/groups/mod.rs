@@ -1,4 +1,4 @@
-//! `[[grains]]` resolved: given, filled, lattice, container, floes, frusta.
+//! `[[grains]]` resolved: given, filled, lattice, net, container, floes, frusta.
 
 mod bonded;
 mod container;
@@ -7,6 +7,8 @@ mod floes;
 mod frustum;
 mod given;
 mod lattice;
+mod net;
+mod net_group;
 mod pancakes;
 mod part;
 mod polygon;
@@ -105,6 +107,9 @@ fn add(
         lattice::spheres_only(group)?;
         return Ok(lattice::lattice(&fill, &model, part)?);
     }
+    if let Some(net) = group.optional("net", &group.net) {
+        return Ok(net::net(group, &net, &model, part, bonds)?);
+    }
     if let Some(region) = group.optional("region", &group.region) {
         if group.shape == GrainShape::Bonded {
             return Err(group.error("shape", "\"bonded\"", "`fill`, which bonded stones need").into());
@@ -172,8 +177,8 @@ fn refuse_idle_keys(group: &Table<Grains>) -> Result<(), SceneError> {
         (
             "bond",
             group.bond.is_some(),
-            group.shape == GrainShape::Bonded || (group.floes.is_some() && !disks),
-            "`shape = \"bonded\"`, or `floes` that are polyhedra",
+            group.shape == GrainShape::Bonded || group.net.is_some() || (group.floes.is_some() && !disks),
+            "`shape = \"bonded\"`, `net`, or `floes` that are polyhedra",
         ),
     ] {
         group.reject_without([(k, present && !used)], needs)?;

@@ -1,5 +1,6 @@
 //! Resolved groups: shapes, grains, and their treatment.
 
+use super::net_group::NetGroup;
 use crate::model::tables::Grading;
 use trackbed_dem::insert::container::Container;
 use trackbed_dem::insert::radius_expansion::Growth;
@@ -31,6 +32,8 @@ pub struct GroupsPart {
     pub overlapping: Vec<u32>,
     /// Groups with recorded mean position and force.
     pub recorded: Vec<u32>,
+    /// Nets, group by group.
+    pub nets: Vec<NetGroup>,
     /// Warnings for the summary.
     pub remarks: Vec<String>,
 }

@@ -2,12 +2,13 @@
 
 use crate::scene::grains::Grains;
 
-pub(super) fn sources(group: &Grains) -> [(&'static str, bool); 7] {
+pub(super) fn sources(group: &Grains) -> [(&'static str, bool); 8] {
     [
         ("spheres", group.spheres.is_some()),
         ("packing", group.packing.is_some()),
         ("fill", group.fill.is_some()),
         ("lattice", group.lattice.is_some()),
+        ("net", group.net.is_some()),
         ("region", group.region.is_some()),
         ("floes", group.floes.is_some()),
         ("frustum", group.frustum.is_some()),
