@@ -119,7 +119,7 @@ impl Checks {
             kappa: at.old.state.kappa,
         };
         let mut values = vec![0.0; at.old.values.len()];
-        let old = Point { state: &state, values: at.old.values };
+        let old = Point { state: &state, ..at.old };
         let Material { elastic, law } = &self.material;
         let expected = turn(&at.response.state.stress, 1.0);
         let size = largest(&expected).max(stiffness * largest(at.increment));

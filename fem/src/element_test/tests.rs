@@ -204,7 +204,7 @@ fn checks_detect_wrong_responses() {
     let soil = coulomb(PHI, PSI);
     let state = PointState { stress: [-CELL, -CELL, -CELL, 0.0, 0.0, 0.0], ..PointState::default() };
     let increment = [4e-3, 3e-3, -8e-3, 3e-4, 0.0, 0.0];
-    let old = Point { state: &state, values: &[] };
+    let old = Point::new(&state, &[]);
     let right = soil.law.update(&soil.elastic, old, &increment, true, &mut []).unwrap();
     assert!(right.region.is_plastic());
     let checks = |change: fn(&mut crate::Response)| {

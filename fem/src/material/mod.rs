@@ -18,6 +18,7 @@ mod point;
 mod principal_return;
 mod spectral;
 mod strength;
+pub mod umat;
 
 pub use drucker_prager::{Cone, DruckerPrager};
 pub use elastic::{Elastic, InvalidConstant};
@@ -26,7 +27,8 @@ pub use law::{ConstitutiveLaw, Response, ReturnError, StateValue};
 pub use linear_elastic::LinearElastic;
 pub use modified_cam_clay::{Consolidation, ModifiedCamClay, Shear};
 pub use mohr_coulomb::MohrCoulomb;
-pub use point::{Point, PointState, Points, ReturnRegion};
+pub use point::{Point, PointState, Points, ReturnRegion, UpdateContext};
+pub use umat::UserMaterial;
 
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
@@ -102,6 +104,9 @@ laws! {
     DruckerPrager,
     /// Modified Cam clay.
     ModifiedCamClay,
+    /// Routine of a shared library.
+    #[serde(skip)]
+    UserMaterial,
 }
 
 /// Material of a mesh.
