@@ -81,6 +81,11 @@ pub trait ConstitutiveLaw {
     /// Whether plastic flow is associated, so that plastic work is never negative.
     fn is_associated(&self) -> bool;
 
+    /// Whether the plastic strain is a state of the law, rather than the strain beyond the reference elasticity.
+    fn has_plastic_strain(&self) -> bool {
+        true
+    }
+
     /// Whether the response is the same in all directions, so that it rotates with stress and strain.
     fn is_isotropic(&self) -> bool {
         true

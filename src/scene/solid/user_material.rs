@@ -4,11 +4,10 @@ use crate::Problem;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
+use trackbed_fem::material::StateValue;
 use trackbed_fem::material::umat::{
     LibraryError, MOST_VALUES, Routine, UserEnergy, UserMaterial, UserOptions, UserTangent,
 };
-use trackbed_fem::material::{ConstitutiveLaw, StateValue};
-use trackbed_io::columns::gauss;
 use trackbed_io::system;
 
 /// Invalid key within a material, and its problem.
@@ -48,7 +47,7 @@ fn routine() -> String {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct UserState {
-    /// Column of `gauss.csv`.
+    /// Name; `state_NAME` in `gauss.csv`.
     pub name: String,
     /// Initial value; default 0.
     #[serde(default)]
@@ -98,10 +97,10 @@ impl UserTable {
     /// Unusable library, constants or state variables.
     pub fn law(&self, name: &str, locate: impl Fn(&Path) -> PathBuf) -> Result<UserMaterial, KeyFault> {
         self.check_values()?;
+        self.check_names()?;
         let routine = self.load(&locate(&self.library))?;
-        let unit = |state: &UserState| (state.name.clone().into(), state.unit.clone().into());
         let value = |state: &UserState| {
-            let (name, unit) = unit(state);
+            let (name, unit) = (format!("state_{}", state.name).into(), state.unit.clone().into());
             (StateValue { name, unit }, state.initial)
         };
         let options = UserOptions {
@@ -118,9 +117,7 @@ impl UserTable {
             },
             thread_safe: self.threads == RoutineThreads::All,
         };
-        let law = UserMaterial::new(routine, options).map_err(|e| fault_of(&e))?;
-        self.check_names(&law)?;
-        Ok(law)
+        UserMaterial::new(routine, options).map_err(|e| fault_of(&e))
     }
 
     fn check_values(&self) -> Result<(), KeyFault> {
@@ -139,19 +136,16 @@ impl UserTable {
         }
     }
 
-    fn check_names(&self, law: &UserMaterial) -> Result<(), KeyFault> {
-        let names: Vec<&str> = law.state_values().iter().map(|value| &*value.name).collect();
-        for (k, name) in names[..self.states.len()].iter().enumerate() {
+    fn check_names(&self) -> Result<(), KeyFault> {
+        for (k, UserState { name, .. }) in self.states.iter().enumerate() {
             let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
-            let plain = name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(letters);
-            if !plain {
-                let expected = "a name of lower-case letters, digits and underscores, first a letter";
+            if name.is_empty() || !name.chars().all(letters) {
+                let expected = "a name of lower-case letters, digits and underscores";
                 return Err(("umat.states", Problem::value(format!("the name \"{name}\""), expected)));
             }
-            let taken = gauss::TABLE.columns.iter().any(|column| column.name == *name);
-            if taken || names.iter().enumerate().any(|(j, other)| j != k && other == name) {
-                let found = format!("the name \"{name}\" of another column");
-                return Err(("umat.states", Problem::value(found, "distinct names of columns")));
+            if self.states[..k].iter().any(|other| other.name == *name) {
+                let found = format!("the name \"{name}\" twice");
+                return Err(("umat.states", Problem::value(found, "distinct names")));
             }
         }
         Ok(())

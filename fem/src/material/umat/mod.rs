@@ -195,6 +195,10 @@ impl ConstitutiveLaw for UserMaterial {
         false
     }
 
+    fn has_plastic_strain(&self) -> bool {
+        false
+    }
+
     /// Unknown: state variables may be tensors, which a rotation of the stress leaves.
     fn is_isotropic(&self) -> bool {
         false
