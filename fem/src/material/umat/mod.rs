@@ -4,7 +4,7 @@
 //! the energy balance closes for any law. Source: Abaqus User Subroutines Reference Guide, section UMAT.
 //! Limits: small strain, no temperature, COORDS is 0 and CELENT is 1.
 //!
-//! Theory manual: section 4.4 of `docs/theory/solid.md`.
+//! Theory manual: section 4.8 of `docs/theory/solid.md`.
 
 mod call;
 mod library;
