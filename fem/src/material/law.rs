@@ -1,8 +1,8 @@
 //! Interface of constitutive laws.
 
+use super::call_error::CallError;
 use super::elastic::{Elastic, InvalidConstant};
 use super::point::{Point, PointState, ReturnRegion};
-use super::umat::CallError;
 use std::borrow::Cow;
 use thiserror::Error;
 

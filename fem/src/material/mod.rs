@@ -5,6 +5,7 @@
 //!
 //! The consistent tangent of [`update`] is singular at apexes, corners and Mohr–Coulomb edges (triaxial
 //! compression under load control). [`regularise`] mixes in the elastic matrix.
+mod call_error;
 mod cam_clay_return;
 pub mod drucker_prager;
 pub mod elastic;
@@ -20,6 +21,7 @@ mod spectral;
 mod strength;
 pub mod umat;
 
+pub use call_error::CallError;
 pub use drucker_prager::{Cone, DruckerPrager};
 pub use elastic::{Elastic, InvalidConstant};
 pub use hardening::Hardening;

@@ -7,8 +7,8 @@ use crate::plastic_common::tight;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicU32, Ordering};
-use trackbed_fem::material::umat::{CallError, LibraryError, Routine, UserEnergy, UserOptions, UserTangent};
-use trackbed_fem::material::{UpdateContext, UserMaterial};
+use trackbed_fem::material::umat::{LibraryError, Routine, UserEnergy, UserOptions, UserTangent};
+use trackbed_fem::material::{CallError, UpdateContext, UserMaterial};
 use trackbed_fem::nonlinear::{LoadFunctions, QuasiStatic, StepControl};
 use trackbed_fem::{
     Cone, Constraint, DruckerPrager, Elastic, Material, Mesh, Model, ModelInput, Point, PointState, Response,

@@ -1,9 +1,9 @@
 //! One call of a routine: order of components, arguments, checks of the results.
 
 use super::library::{NAME_LENGTH, Routine};
+use crate::material::call_error::CallError;
 use crate::material::point::UpdateContext;
 use std::ffi::c_int;
-use thiserror::Error;
 
 /// Index in xx, yy, zz, xy, yz, zx of the components 11, 22, 33, 12, 13, 23 of Abaqus; its own inverse.
 const ORDER: [usize; 6] = [0, 1, 2, 3, 5, 4];
@@ -12,29 +12,6 @@ const GUARDS: usize = 8;
 /// Content of a guard cell.
 const GUARD: u64 = 0x7ff8_5a5a_a5a5_5a5a;
 const UNIT: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
-
-/// Failed call.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum CallError {
-    /// PNEWDT below 1.
-    #[error("a shorter step requested (PNEWDT = {pnewdt})")]
-    ShorterStep {
-        /// Requested fraction of the step.
-        pnewdt: f64,
-    },
-    /// Result not finite.
-    #[error("{what} not finite")]
-    NotFinite {
-        /// Argument.
-        what: &'static str,
-    },
-    /// State variable beyond the declared ones.
-    #[error("STATEV written beyond its {states} values")]
-    Overrun {
-        /// Number of state variables.
-        states: usize,
-    },
-}
 
 /// Input of a call, in the order of this program.
 pub(super) struct Input<'a> {

@@ -9,9 +9,9 @@
 mod call;
 mod library;
 
-pub use call::CallError;
 pub use library::{LibraryError, Routine};
 
+use super::call_error::CallError;
 use super::elastic::{Elastic, InvalidConstant};
 use super::law::{ConstitutiveLaw, Response, ReturnError, StateValue};
 use super::point::{Point, PointState, ReturnRegion};
