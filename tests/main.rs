@@ -70,6 +70,7 @@ mod suite {
     mod trade;
     mod train;
     mod tutorials;
+    mod user_material;
     mod validity;
     mod verdict;
     mod view;

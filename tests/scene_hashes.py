@@ -10,7 +10,7 @@ differ, are missing or new (exit code 1). --keep FOLDER: keep the files. --only 
 
 * .vtu, .vtp: elements, attributes, decoded arrays bitwise; not the storage: `format`, `offset`, `encoding`,
   `compressor`, `header_type`, `version`, ranges, white space.
-* summary.json: without wall times, threads, memory, `version`, `scene_hash` (MACHINE_KEYS).
+* summary.json: without wall times, threads, memory, `version`, `scene_hash`, compiled libraries (MACHINE_KEYS).
 * run.json: without `version` and scene path.
 * log.txt: without wall times.
 * `check`, `explain`: without memory, trial speed, vector instructions.
@@ -43,6 +43,7 @@ CASES = ROOT / "tests" / "scene_cases.toml"
 STORAGE = {"format", "offset", "encoding", "compressor", "header_type", "version", "RangeMin", "RangeMax"}
 MACHINE_KEYS = {"stages.seconds", "newton.assembly_seconds", "newton.factor_seconds", "newton.solve_seconds"}
 MACHINE_KEYS |= {"threads", "peak_memory", "cpu_seconds", "model.predicted_memory", "version", "scene_hash"}
+MACHINE_KEYS |= {"libraries.path", "libraries.hash"}
 HEADERS = {"UInt32": "I", "UInt64": "Q"}
 NUMBERS = {"Float64": "d", "Float32": "f", "Int8": "b", "UInt8": "B", "Int16": "h", "UInt16": "H"}
 NUMBERS |= {"Int32": "i", "UInt32": "I", "Int64": "q", "UInt64": "Q"}
@@ -263,7 +264,11 @@ def cases(only):
     scenes = {p.relative_to(ROOT).as_posix() for p in (ROOT / "inputs").rglob("*.toml") if is_scene(p)}
     without = scenes - {c.get("scene") for c in found}
     assert not without, f"{', '.join(sorted(without))}: no case in {CASES.name}"
-    return [c for c in found if not only or any(text in c["name"] for text in only)]
+    chosen = [c for c in found if not only or any(text in c["name"] for text in only)]
+    for case in chosen:
+        if "build" in case:
+            subprocess.run(case["build"], cwd=ROOT, check=True)
+    return chosen
 
 
 def run_all(chosen, binary, options):

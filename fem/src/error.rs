@@ -1,6 +1,6 @@
 //! Errors of models, methods and solvers.
 
-use crate::material::ReturnRegion;
+use crate::material::{ReturnError, ReturnRegion};
 use crate::solver::AnalysisError;
 use crate::solver::conjugate::Stopped;
 use thiserror::Error;
@@ -121,6 +121,10 @@ pub enum SolveError {
         xi: [f64; 3],
         region: ReturnRegion,
     },
+    #[error(
+        "{law} failed at time {time}, element {element}, integration point {point}, in the smallest step: {cause}"
+    )]
+    UserMaterial { time: f64, element: u32, point: u32, law: String, cause: ReturnError },
     #[error("step stopped between two iterations, as requested")]
     Stopped,
     #[error("{what} is {value}, expected {expected}")]

@@ -225,7 +225,11 @@ impl Model {
         let (states, values) = points.split_mut();
         for e in 0..self.mesh.element_count() {
             for (i, p) in (self.point_start(e)..self.point_start(e + 1)).enumerate() {
-                self.material(e).law.initial_values(&states[p].stress, &mut values[self.values(e, i)]);
+                self.material(e).law.initial_values(
+                    self.elastic(e),
+                    &states[p].stress,
+                    &mut values[self.values(e, i)],
+                );
             }
         }
         points
@@ -235,7 +239,7 @@ impl Model {
     #[inline]
     pub fn point<'a>(&self, points: &'a Points, element: usize, i: usize) -> Point<'a> {
         let state: &PointState = &points[self.point_start(element) + i];
-        Point { state, values: &points.values()[self.values(element, i)] }
+        Point::new(state, &points.values()[self.values(element, i)])
     }
 
     /// Distinct references of the nonlinear laws.

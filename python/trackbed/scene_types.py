@@ -95,6 +95,12 @@ DragArea = Literal["projected", "wetted"]
 ElementColumns = Literal["auto", "id_material_nodes", "id_nodes", "material_nodes", "nodes"]
 
 
+# Source of the energies.
+# "reference": `young` and `poisson`, work on the remaining strain.
+# "library": SSE, SPD and SCD.
+EnergySource = Literal["reference", "library"]
+
+
 # How the equations of an elastic solid are solved.
 # "auto": Iterative from 25,000 nodes (static), 100,000 (steps, lumped mass), else direct.
 # "direct": Sparse Cholesky factor.
@@ -174,7 +180,8 @@ Mass = Literal["consistent", "lumped"]
 # "von_mises": Von Mises.
 # "tresca": Tresca.
 # "modified_cam_clay": Modified Cam clay.
-MaterialModel = Literal["elastic", "mohr_coulomb", "drucker_prager", "von_mises", "tresca", "modified_cam_clay"]
+# "umat": Routine of a shared library.
+MaterialModel = Literal["elastic", "mohr_coulomb", "drucker_prager", "von_mises", "tresca", "modified_cam_clay", "umat"]
 
 
 # One rigid-body motion in world axes.
@@ -241,6 +248,12 @@ ReductionKind = Literal["surface", "modes"]
 Resistance = Literal["spring", "none"]
 
 
+# Threads of a routine.
+# "one": One call at a time.
+# "all": Thread-safe routine.
+RoutineThreads = Literal["one", "all"]
+
+
 # Coupling scheme.
 # "predicted": Grains first, on predicted surface motion.
 # "lagged": Solid first, with previous force.
@@ -302,6 +315,12 @@ SpecimenTest = Literal["compression", "brazilian"]
 # "normal": Cut off at zero.
 # "weibull": Scale as given.
 SpreadKind = Literal["normal", "weibull"]
+
+
+# Source of the tangent.
+# "library": DDSDDE, differences if it is 0.
+# "differences": Central differences of the stress.
+TangentSource = Literal["library", "differences"]
 
 
 # Kind of a wall.
@@ -2254,6 +2273,9 @@ class SolidMaterial(_SolidMaterial, total=False):
     # `"drucker_prager"`.
     tension: Quantity
 
+    # Routine of a shared library; with `"umat"`.
+    umat: UserTable
+
     # Initial void ratio e₀; > 0; with `"modified_cam_clay"`.
     void_ratio: Float
 
@@ -2493,6 +2515,44 @@ class Track(TypedDict, total=False):
 
     # Sleepers.
     sleeper: Required[Sleeper]
+
+
+class UserState(TypedDict, total=False):
+    """State variable of a routine."""
+
+    # Initial value; default 0.
+    initial: Float
+
+    # Name; `state_NAME` in `gauss.csv`.
+    name: Required[str]
+
+    # Unit of the column; default none.
+    unit: str
+
+
+class UserTable(TypedDict, total=False):
+    """`[solid.material.umat]`: routine of a shared library by the interface UMAT of Abaqus."""
+
+    # PROPS [SI units]; default none; at most 1000.
+    constants: Floats
+
+    # Stored and dissipated energy; default `"reference"`.
+    energy: EnergySource
+
+    # Shared library.
+    library: Required[str]
+
+    # Symbol of the routine; default `"umat_"`.
+    routine: str
+
+    # STATEV; default none; at most 1000.
+    states: Sequence[UserState]
+
+    # Tangent of the law; default `"library"`.
+    tangent: TangentSource
+
+    # Threads that call the routine simultaneously; default `"one"`.
+    threads: RoutineThreads
 
 
 class Wall(TypedDict, total=False):

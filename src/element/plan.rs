@@ -96,9 +96,10 @@ impl Plan {
 }
 
 fn named(table: &Table<SolidMaterial>) -> Result<Named, SceneError> {
-    let material = table.resolve().map_err(|MaterialFault { key, problem }| table.problem(key, problem))?;
-    let name = if table.name.is_empty() { format!("material {}", table.id) } else { table.name.clone() };
-    Ok(Named { name, material })
+    let material = table
+        .resolve(|file| table.locate(file))
+        .map_err(|MaterialFault { key, problem }| table.problem(key, problem))?;
+    Ok(Named { name: table.title(), material })
 }
 
 fn own_materials(root: &Table<ElementFile>) -> Result<Vec<Named>, SceneError> {

@@ -422,6 +422,12 @@ pub mod gauss {
         SZX: Scalar "szx" "Pa" "shear stress";
         EQUIVALENT_PLASTIC_STRAIN: Scalar "equivalent_plastic_strain" "" "equivalent plastic strain of a plastic solid";
         PRECONSOLIDATION_PRESSURE: Scalar "preconsolidation_pressure" "Pa" "state value of modified Cam clay";
+        STATE: Scalar "state_<name>" "" "state variable of a user material, with its unit";
+        TOTAL_STRAIN: Tensor "total_strain" "" "strain of a user material, with the steps of the initial stress";
+        INCREMENTS: Scalar "increments" "" "accepted increments of a user material";
+        ELASTIC_ENERGY: Scalar "elastic_energy" "J/m3" "SSE of a user material with energies of the library";
+        PLASTIC_DISSIPATION: Scalar "plastic_dissipation" "J/m3" "SPD of a user material with energies of the library";
+        CREEP_DISSIPATION: Scalar "creep_dissipation" "J/m3" "SCD of a user material with energies of the library";
     }
 }
 

@@ -1,5 +1,8 @@
 //! Hash of texts for checkpoints and scene identity.
 
+use std::path::Path;
+use trackbed_io::read::source;
+
 /// 64-bit FNV-1a hash (Fowler, Noll, Vo).
 #[derive(Clone, Copy, Debug)]
 pub struct Hash(u64);
@@ -11,6 +14,13 @@ impl Default for Hash {
 }
 
 impl Hash {
+    /// Returns the hash of a file in hexadecimal; of no bytes if it cannot be read.
+    pub fn of_file(path: &Path) -> String {
+        let mut hash = Hash::default();
+        hash.add(&source::bytes(path, source::LARGEST).unwrap_or_default());
+        hash.hex()
+    }
+
     /// Adds bytes.
     pub fn add(&mut self, bytes: &[u8]) {
         for &b in bytes {

@@ -50,7 +50,7 @@ pub use memory::{Prediction, methods, parse_size, size};
 pub use origin::{default_folder, named_files, quoted, scene_hash};
 pub use ranks::{Ranked, follow};
 pub use run_file::RunFile;
-use summary::{RunRecord, Verdict};
+use summary::{LibraryRecord, RunRecord, Verdict};
 pub use summary::{Summary, peak_memory};
 
 pub use threads::thread_pool;
@@ -314,6 +314,7 @@ fn describe(run: &Run<'_>, summary: &mut Summary) -> Result<(), Failure> {
         prediction.check(run.memory)?;
         summary.model.predicted_memory = Some(prediction.total());
         summary.sources.extend(sources::solid(solid, run.job.grains.is_some()));
+        summary.solid.libraries = LibraryRecord::of(solid);
     }
     if let Some(part) = &run.job.grains {
         summary.warnings.extend(part.groups.remarks.iter().cloned());

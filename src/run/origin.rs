@@ -153,6 +153,7 @@ fn files_of(scene: &Scene) -> Vec<&Path> {
         );
         let histories = s.load.iter().map(|l| &l.history).chain(s.support.iter().map(|l| &l.history));
         files.extend(histories.flatten().filter_map(|h| h.file.as_deref()));
+        files.extend(s.material.iter().filter_map(|m| Some(m.umat.as_ref()?.library.as_path())));
     }
     for g in &scene.grains {
         files.extend(g.library.as_deref());

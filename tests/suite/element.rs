@@ -5,7 +5,7 @@ use super::support::{Folder, Outcome, Table, json, repository, snapshot, trackbe
 use std::fs;
 use std::path::Path;
 
-fn element(file: &Path, out: &Path, more: &[&str]) -> Outcome {
+pub(super) fn element(file: &Path, out: &Path, more: &[&str]) -> Outcome {
     let paths = [file.display().to_string(), "--out".into(), out.display().to_string()];
     let words = std::iter::once("element".to_string()).chain(paths);
     trackbed(words.chain(more.iter().map(|word| word.to_string())))

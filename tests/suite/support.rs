@@ -426,6 +426,19 @@ pub fn shaft(width: f64) -> String {
     .concat()
 }
 
+/// Compiles a routine of a user material in C; the library lives as long as the system keeps its temporary files.
+pub fn compile(source: &Path) -> PathBuf {
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let name = format!("trackbed-law-{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+    let library = std::env::temp_dir().join(format!("{name}.so"));
+    let options = ["-O2", "-ffp-contract=off", "-shared", "-fPIC", "-o"];
+    let mut command = Command::new("cc");
+    let done =
+        command.args(options).arg(&library).arg(source).arg("-lm").output().expect("a C compiler (cc)");
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    library
+}
+
 /// Directory with the small block's lists and `text` as `scene.toml`.
 pub fn scene_folder(name: &str, text: &str) -> Folder {
     let folder = Folder::new(name);

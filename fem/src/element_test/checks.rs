@@ -36,8 +36,9 @@ pub struct Checks {
     rotation: [[f64; 3]; 3],
     /// Consistent tangent.
     pub tangent: TangentCheck,
-    /// Largest negative plastic work over elastic stiffness times strain increment squared.
-    pub negative_work: f64,
+    /// Largest negative plastic work over elastic stiffness times strain increment squared; none if the plastic
+    /// strain is not of the law.
+    pub negative_work: Option<f64>,
     /// Number of increments with plastic flow.
     pub plastic: usize,
     /// Largest deviation of the rotated response over the size of the stress; none for anisotropic laws.
@@ -58,7 +59,7 @@ impl Checks {
             material: material.clone(),
             rotation: rotation(),
             tangent: TangentCheck::default(),
-            negative_work: 0.0,
+            negative_work: material.law.has_plastic_strain().then_some(0.0),
             plastic: 0,
             objectivity: material.law.is_isotropic().then_some(0.0),
         }
@@ -73,8 +74,11 @@ impl Checks {
         let work: f64 = (0..6).map(|k| new.stress[k] * (new.plastic_strain[k] - old.plastic_strain[k])).sum();
         self.plastic += usize::from(at.response.region.is_plastic());
         let size = largest(at.increment);
-        if work < 0.0 && size > 0.0 {
-            self.negative_work = self.negative_work.max(-work / (stiffness * size * size));
+        if let Some(most) = &mut self.negative_work
+            && work < 0.0
+            && size > 0.0
+        {
+            *most = most.max(-work / (stiffness * size * size));
         }
         work
     }
@@ -119,7 +123,7 @@ impl Checks {
             kappa: at.old.state.kappa,
         };
         let mut values = vec![0.0; at.old.values.len()];
-        let old = Point { state: &state, values: at.old.values };
+        let old = Point { state: &state, ..at.old };
         let Material { elastic, law } = &self.material;
         let expected = turn(&at.response.state.stress, 1.0);
         let size = largest(&expected).max(stiffness * largest(at.increment));

@@ -2,7 +2,9 @@
 
 use super::checks::{Checks, Increment};
 use super::path::{Control, Sample};
-use crate::material::{Material, Point, PointState, REGULARISATION, Response, ReturnError, regularise};
+use crate::material::{
+    Material, Point, PointState, REGULARISATION, Response, ReturnError, UpdateContext, regularise,
+};
 use nalgebra::{Matrix6, Vector6};
 use thiserror::Error;
 
@@ -43,18 +45,21 @@ pub(super) struct Driver<'a> {
     values: Vec<f64>,
     strain: [f64; 6],
     plastic_work: f64,
+    /// A step lasts 1 s.
+    context: UpdateContext,
 }
 
 impl<'a> Driver<'a> {
     pub(super) fn new(material: &'a Material, stress: &[f64; 6]) -> Driver<'a> {
         let state = PointState { stress: *stress, ..PointState::default() };
         let mut values = vec![0.0; material.law.state_values().len()];
-        material.law.initial_values(stress, &mut values);
-        Driver { material, state, values, strain: [0.0; 6], plastic_work: 0.0 }
+        material.law.initial_values(&material.elastic, stress, &mut values);
+        let context = UpdateContext { time: 0.0, time_step: 1.0, element: 1, point: 1 };
+        Driver { material, state, values, strain: [0.0; 6], plastic_work: 0.0, context }
     }
 
     pub(super) fn point(&self) -> Point<'_> {
-        Point { state: &self.state, values: &self.values }
+        Point { state: &self.state, values: &self.values, context: self.context }
     }
 
     pub(super) fn sample(&self) -> Sample {
@@ -91,6 +96,8 @@ impl<'a> Driver<'a> {
                 MOST_PARTS => aim[k],
                 _ => start[k] + share * (aim[k] - start[k]),
             });
+            self.context.time = (step - 1) as f64 + f64::from(done) / f64::from(MOST_PARTS);
+            self.context.time_step = f64::from(part) / f64::from(MOST_PARTS);
             match self.solve(controls, &aim) {
                 Ok((increment, response, values)) => {
                     self.commit(step, &increment, &response, values, checks);

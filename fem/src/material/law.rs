@@ -1,19 +1,21 @@
 //! Interface of constitutive laws.
 
+use super::call_error::CallError;
 use super::elastic::{Elastic, InvalidConstant};
 use super::point::{Point, PointState, ReturnRegion};
+use std::borrow::Cow;
 use thiserror::Error;
 
 /// Relative overshoot that still counts as elastic.
 pub(super) const YIELD_TOLERANCE: f64 = 1e-12;
 
 /// State value of a law beyond [`PointState`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StateValue {
     /// Column name.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Unit; empty if dimensionless.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
 }
 
 /// Result of [`ConstitutiveLaw::update`].
@@ -45,6 +47,9 @@ pub enum ReturnError {
         /// Equivalent plastic strain.
         kappa: f64,
     },
+    /// Failed call of a user material.
+    #[error(transparent)]
+    UserMaterial(#[from] CallError),
 }
 
 /// Constitutive law: stress and history of an integration point.
@@ -76,6 +81,11 @@ pub trait ConstitutiveLaw {
     /// Whether plastic flow is associated, so that plastic work is never negative.
     fn is_associated(&self) -> bool;
 
+    /// Whether the plastic strain is a state of the law, rather than the strain beyond the reference elasticity.
+    fn has_plastic_strain(&self) -> bool {
+        true
+    }
+
     /// Whether the response is the same in all directions, so that it rotates with stress and strain.
     fn is_isotropic(&self) -> bool {
         true
@@ -85,12 +95,12 @@ pub trait ConstitutiveLaw {
     fn has_symmetric_tangent(&self) -> bool;
 
     /// State values of this law.
-    fn state_values(&self) -> &'static [StateValue] {
+    fn state_values(&self) -> &[StateValue] {
         &[]
     }
 
     /// Sets the initial state values under `stress` [Pa]. Shape `[state_values]`.
-    fn initial_values(&self, _stress: &[f64; 6], _values: &mut [f64]) {}
+    fn initial_values(&self, _elastic: &Elastic, _stress: &[f64; 6], _values: &mut [f64]) {}
 
     /// Integrates a strain increment [-] (engineering shear) from a committed state.
     ///
@@ -115,6 +125,11 @@ pub trait ConstitutiveLaw {
     /// Elastic energy of a point [J/m³].
     fn stored_energy(&self, elastic: &Elastic, point: Point<'_>) -> f64 {
         elastic.stored_energy(&point.state.stress)
+    }
+
+    /// Energy dissipated from `old` to `new` [J/m³]; default: work of the mean stress on the plastic strain.
+    fn dissipation(&self, _old: Point<'_>, _new: Point<'_>) -> Option<f64> {
+        None
     }
 
     /// Yield function [Pa], at most 0 inside; minus infinity without yield surface.

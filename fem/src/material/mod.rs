@@ -5,6 +5,7 @@
 //!
 //! The consistent tangent of [`update`] is singular at apexes, corners and Mohr–Coulomb edges (triaxial
 //! compression under load control). [`regularise`] mixes in the elastic matrix.
+mod call_error;
 mod cam_clay_return;
 pub mod drucker_prager;
 pub mod elastic;
@@ -18,7 +19,9 @@ mod point;
 mod principal_return;
 mod spectral;
 mod strength;
+pub mod umat;
 
+pub use call_error::CallError;
 pub use drucker_prager::{Cone, DruckerPrager};
 pub use elastic::{Elastic, InvalidConstant};
 pub use hardening::Hardening;
@@ -26,7 +29,8 @@ pub use law::{ConstitutiveLaw, Response, ReturnError, StateValue};
 pub use linear_elastic::LinearElastic;
 pub use modified_cam_clay::{Consolidation, ModifiedCamClay, Shear};
 pub use mohr_coulomb::MohrCoulomb;
-pub use point::{Point, PointState, Points, ReturnRegion};
+pub use point::{Point, PointState, Points, ReturnRegion, UpdateContext};
+pub use umat::UserMaterial;
 
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
@@ -102,6 +106,9 @@ laws! {
     DruckerPrager,
     /// Modified Cam clay.
     ModifiedCamClay,
+    /// Routine of a shared library.
+    #[serde(skip)]
+    UserMaterial,
 }
 
 /// Material of a mesh.

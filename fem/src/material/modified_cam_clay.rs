@@ -23,6 +23,7 @@ use super::law::{ConstitutiveLaw, Response, ReturnError, StateValue, YIELD_TOLER
 use super::point::{Point, PointState, ReturnRegion};
 use super::spectral::{Voigt, invariants};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// Reference pressure without preconsolidation [Pa].
 const REFERENCE_PRESSURE: f64 = 100e3;
@@ -143,11 +144,13 @@ impl ConstitutiveLaw for ModifiedCamClay {
         false
     }
 
-    fn state_values(&self) -> &'static [StateValue] {
-        &[StateValue { name: "preconsolidation_pressure", unit: "Pa" }]
+    fn state_values(&self) -> &[StateValue] {
+        const PRESSURE: StateValue =
+            StateValue { name: Cow::Borrowed("preconsolidation_pressure"), unit: Cow::Borrowed("Pa") };
+        &[PRESSURE]
     }
 
-    fn initial_values(&self, stress: &[f64; 6], values: &mut [f64]) {
+    fn initial_values(&self, _: &Elastic, stress: &[f64; 6], values: &mut [f64]) {
         values[0] = match self.consolidation {
             Consolidation::Pressure(pc) => pc,
             Consolidation::Ratio(ratio) => {

@@ -14,6 +14,19 @@ pub struct PointState {
     pub kappa: f64,
 }
 
+/// Time and position of an update, for laws that depend on them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct UpdateContext {
+    /// Time at the start of the step [s].
+    pub time: f64,
+    /// Step [s].
+    pub time_step: f64,
+    /// Element number of the input file; 0 without a mesh.
+    pub element: u32,
+    /// Integration point of the element, from 1; 0 without a mesh.
+    pub point: u32,
+}
+
 /// State of one point.
 #[derive(Clone, Copy, Debug)]
 pub struct Point<'a> {
@@ -21,11 +34,21 @@ pub struct Point<'a> {
     pub state: &'a PointState,
     /// State values, ordered as [`super::ConstitutiveLaw::state_values`].
     pub values: &'a [f64],
+    /// Time and position.
+    pub context: UpdateContext,
+}
+
+impl<'a> Point<'a> {
+    /// Point without time and position.
+    #[inline]
+    pub fn new(state: &'a PointState, values: &'a [f64]) -> Point<'a> {
+        Point { state, values, context: UpdateContext::default() }
+    }
 }
 
 impl<'a> From<&'a PointState> for Point<'a> {
     fn from(state: &'a PointState) -> Point<'a> {
-        Point { state, values: &[] }
+        Point::new(state, &[])
     }
 }
 

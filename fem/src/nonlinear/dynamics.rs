@@ -135,7 +135,8 @@ impl StepHalving for NonlinearNewmark {
         let forces = norm(&self.load[1]).max(norm(product)).max(INERTIA * norm(&self.rhs));
         let stop = || loading.stopped();
         let (old, forces) = (&state.points, Some(forces));
-        let problem = Problem { old, rhs: &self.rhs, fixed: &self.fixed, linear, forces, stop: &stop };
+        let (rhs, fixed, step) = (&self.rhs, &self.fixed, [state.time, dt]);
+        let problem = Problem { old, rhs, fixed, linear, step, forces, stop: &stop };
         self.newton.solve(model, &problem)?;
         let next = &mut self.next;
         for d in 0..state.u.len() {

@@ -127,10 +127,10 @@ fn set(
             let (material, own) = (model.material(e), model.values(e, i));
             let mut new = PointState { stress: stress(e, at), ..Default::default() };
             let mut start = vec![0.0; own.len()];
-            material.law.initial_values(&new.stress, &mut start);
+            material.law.initial_values(&material.elastic, &new.stress, &mut start);
             let values = &mut values[own];
             values.copy_from_slice(&start);
-            let old = Point { state: &new, values: &start };
+            let old = Point::new(&new, &start);
             if material.law.yield_function(old) > 0.0 || new.stress.iter().any(|s| !s.is_finite()) {
                 let response = material.law.update(&material.elastic, old, &[0.0; 6], false, values);
                 let response = response.map_err(|_| {

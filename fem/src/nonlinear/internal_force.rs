@@ -4,7 +4,7 @@
 
 use super::points::{Moved, PointTable};
 use crate::element::MAX_NODES;
-use crate::material::{Point, PointState, Points, ReturnRegion};
+use crate::material::{Point, PointState, Points, ReturnError, ReturnRegion, UpdateContext};
 use crate::mesh::Mesh;
 use crate::model::Model;
 
@@ -15,6 +15,7 @@ const CHUNK: usize = 32;
 pub(crate) struct PointFailure {
     pub element: usize,
     pub point: usize,
+    pub cause: ReturnError,
 }
 
 pub(crate) struct InternalForce {
@@ -26,6 +27,8 @@ pub(crate) struct InternalForce {
     /// Nodal forces [N]. Shape `[3 * nodes]`.
     pub force: Vec<f64>,
     pub plastic: usize,
+    /// Start and length of the step [s].
+    pub step: [f64; 2],
     element_force: Vec<[f64; 3]>,
 }
 
@@ -44,6 +47,13 @@ struct Input<'a> {
     table: &'a PointTable,
     old: &'a Points,
     increment: &'a [f64],
+    step: [f64; 2],
+}
+
+/// Context of point `i` of element `e` in a step [start, length] [s].
+#[inline]
+pub(crate) fn context(mesh: &Mesh, [time, time_step]: [f64; 2], e: usize, i: usize) -> UpdateContext {
+    UpdateContext { time, time_step, element: mesh.element_ids[e], point: i as u32 + 1 }
 }
 
 impl InternalForce {
@@ -55,13 +65,14 @@ impl InternalForce {
             regions: vec![ReturnRegion::Elastic; points],
             force: vec![0.0; model.dof_count()],
             plastic: 0,
+            step: [0.0; 2],
             element_force: vec![[0.0; 3]; model.mesh().connectivity.nodes().len()],
         }
     }
 
     /// Evaluates the increment `increment` [m] (shape `[3 * nodes]`) from `old`.
     pub fn evaluate(&mut self, model: &Model, old: &Points, increment: &[f64]) -> Result<(), PointFailure> {
-        let input = Input { model, table: &self.table, old, increment };
+        let input = Input { model, table: &self.table, old, increment, step: self.step };
         let (points, values) = self.points.split_mut();
         let all = Slice {
             first: 0,
@@ -165,12 +176,16 @@ impl Input<'_> {
                 points[i] = PointState { stress: std::array::from_fn(|k| old.stress[k] + step[k]), ..*old };
             } else {
                 let own = self.model.values(e, i);
-                let old = Point { state: old, values: &self.old.values()[own.clone()] };
+                let old = Point {
+                    state: old,
+                    values: &self.old.values()[own.clone()],
+                    context: context(self.model.mesh(), self.step, e, i),
+                };
                 let new = &mut values[own.start - first_value..own.end - first_value];
                 let response = material
                     .law
                     .update(&material.elastic, old, &strain, false, new)
-                    .map_err(|_| PointFailure { element: e, point: i })?;
+                    .map_err(|cause| PointFailure { element: e, point: i, cause })?;
                 (points[i], regions[i]) = (response.state, response.region);
                 plastic += usize::from(response.region != ReturnRegion::Elastic);
             }
@@ -181,7 +196,7 @@ impl Input<'_> {
         if forces.iter().flatten().sum::<f64>().is_finite() {
             Ok(plastic)
         } else {
-            Err(PointFailure { element: e, point: 0 })
+            Err(PointFailure { element: e, point: 0, cause: ReturnError::NotFinite })
         }
     }
 }

@@ -17,6 +17,11 @@ pub(crate) fn point_energies(model: &Model, table: &PointTable, old: &Points, ne
         for (i, p) in table.points(e).enumerate() {
             let (a, b, volume) = (&old[p], &new[p], table.volume(p));
             elastic += volume * (energy(new, i) - energy(old, i));
+            let [before, after] = [old, new].map(|points| model.point(points, e, i));
+            if let Some(lost) = material.law.dissipation(before, after) {
+                plastic += volume * lost;
+                continue;
+            }
             for k in 0..6 {
                 let mean = 0.5 * (a.stress[k] + b.stress[k]);
                 plastic += volume * mean * (b.plastic_strain[k] - a.plastic_strain[k]);

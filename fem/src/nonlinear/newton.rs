@@ -24,7 +24,7 @@ use crate::assembly::Combination;
 use crate::element::stiffness_points;
 use crate::error::SolveError;
 use crate::integrator::{SolverState, Statistics, StepLength, StepReport};
-use crate::material::{Points, ReturnRegion};
+use crate::material::{Law, Points, ReturnError, ReturnRegion};
 use crate::model::Model;
 use crate::state::State;
 use std::time::Instant;
@@ -36,6 +36,7 @@ pub(crate) struct NotConverged {
     element: usize,
     point: usize,
     region: ReturnRegion,
+    cause: Option<ReturnError>,
 }
 
 pub(crate) enum Failure {
@@ -48,6 +49,10 @@ impl NotConverged {
     /// Error with the element number of the files.
     pub fn error(&self, model: &Model, time: f64) -> SolveError {
         let mesh = model.mesh();
+        if let (Law::UserMaterial(law), Some(cause)) = (&model.material(self.element).law, self.cause) {
+            let (element, point) = (mesh.element_ids[self.element], self.point as u32 + 1);
+            return SolveError::UserMaterial { time, element, point, law: law.label(), cause };
+        }
         let points = stiffness_points(mesh.connectivity.kind(self.element), model.quadrature());
         SolveError::Diverged {
             time,
@@ -70,6 +75,8 @@ pub(crate) struct Problem<'a> {
     pub fixed: &'a [f64],
     /// Matrices added to the internal force.
     pub linear: Combination,
+    /// Start and length of the step [s].
+    pub step: [f64; 2],
     /// Reference force [N], if larger than the internal force; default: `rhs`.
     pub forces: Option<f64>,
     pub stop: &'a dyn Fn() -> bool,
@@ -149,6 +156,7 @@ impl Newton {
         self.system
             .factor_elastic(model, &mut self.tangent, problem.linear, &mut self.statistics)
             .map_err(Failure::Fatal)?;
+        self.force.step = problem.step;
         self.report.residuals.clear();
         self.report.iterations = 0;
         self.du.fill(0.0);
@@ -276,10 +284,15 @@ impl Newton {
         let outcome = self.force.evaluate(model, problem.old, &self.du);
         self.statistics.evaluations += 1;
         self.statistics.assembly_seconds += start.elapsed().as_secs_f64();
-        if let Err(PointFailure { element, point }) = outcome {
-            let (residual, iterations) = (f64::NAN, self.report.iterations + 1);
-            let region = ReturnRegion::Elastic;
-            return Err(Failure::NotConverged(NotConverged { residual, iterations, element, point, region }));
+        if let Err(PointFailure { element, point, cause }) = outcome {
+            return Err(Failure::NotConverged(NotConverged {
+                residual: f64::NAN,
+                iterations: self.report.iterations + 1,
+                element,
+                point,
+                region: ReturnRegion::Elastic,
+                cause: Some(cause),
+            }));
         }
         for d in 0..self.du.len() {
             self.residual[d] = problem.rhs[d] - self.force.force[d];
@@ -382,7 +395,7 @@ impl Newton {
         }
         let element = if element == usize::MAX { 0 } else { element };
         let region = self.force.regions[self.force.table.points(element).start + point];
-        NotConverged { residual, iterations: self.report.iterations, element, point, region }
+        NotConverged { residual, iterations: self.report.iterations, element, point, region, cause: None }
     }
 }
 

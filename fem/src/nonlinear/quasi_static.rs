@@ -100,6 +100,7 @@ impl StepHalving for QuasiStatic {
             rhs: &self.load,
             fixed: &self.fixed,
             linear: Combination::default(),
+            step: [state.time, dt],
             forces: None,
             stop: &stop,
         };

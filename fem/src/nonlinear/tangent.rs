@@ -4,7 +4,7 @@
 //! [`REGULARISATION`], or [`STABILISATION`] for stalled unsymmetric tangents, which cycle between sets of
 //! yielding points.
 
-use super::internal_force::{InternalForce, element_increment};
+use super::internal_force::{InternalForce, context, element_increment};
 use crate::assembly::Combination;
 use crate::assumed::modes::{self, Amplitudes};
 use crate::element::MAX_NODES;
@@ -234,7 +234,8 @@ impl Input<'_> {
                 continue;
             }
             // Succeeded for the force.
-            let (old, strain) = (self.model.point(self.old, e, i), table.strain(e, i, &moved));
+            let (mut old, strain) = (self.model.point(self.old, e, i), table.strain(e, i, &moved));
+            old.context = context(self.model.mesh(), self.force.step, e, i);
             let Ok(response) = material.law.update(&material.elastic, old, &strain, true, &mut values) else {
                 continue;
             };

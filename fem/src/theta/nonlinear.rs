@@ -129,7 +129,8 @@ impl NonlinearTheta {
         let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
         let forces = norm(mean_load).max(norm(start)).max(INERTIA * norm(&self.rhs));
         let (old, forces, stop) = (&state.points, Some(forces), &|| false);
-        let problem = Problem { old, rhs: &self.rhs, fixed: &self.fixed, linear, forces, stop };
+        let (rhs, fixed, step) = (&self.rhs, &self.fixed, [state.time, dt]);
+        let problem = Problem { old, rhs, fixed, linear, step, forces, stop };
         self.newton.solve(model, &problem)?;
         let next = &mut self.next;
         for d in 0..n {

@@ -3,8 +3,10 @@
 mod checks;
 mod paths;
 
+use crate::user_material;
 use checks::*;
 use paths::Case;
+use trackbed_fem::material::umat::UserEnergy;
 use trackbed_fem::material::{Consolidation, ModifiedCamClay, Shear};
 use trackbed_fem::{Cone, DruckerPrager, Elastic, Hardening, Material, MohrCoulomb};
 
@@ -17,6 +19,11 @@ fn coulomb(phi: f64, psi: f64, tension: Option<f64>) -> MohrCoulomb {
 fn cone(phi: f64, psi: f64, cohesion: Hardening) -> DruckerPrager {
     let (friction, cone) = (phi.into(), Cone::PlaneStrain);
     DruckerPrager { cohesion, friction, dilation: psi, cone, tension: None }
+}
+
+/// Routine of a shared library.
+fn user_cone(energy: UserEnergy) -> Material {
+    user_material::drucker_prager(&SOIL, &cone(0.5, 0.1, 10e3.into()), energy)
 }
 
 fn rising() -> Hardening {
@@ -100,5 +107,7 @@ laws! {
     cam_clay: Material::plastic(clay(POISSON).reference(1900.0), clay(POISSON)), 50e3, 1e-4, 2e-3;
     cam_clay_conservative: Material::plastic(clay(MODULUS).reference(1900.0), clay(MODULUS)), 50e3, 1e-4, 2e-3;
     cam_clay_overconsolidated: Material::plastic(dense().reference(1900.0), dense()), 50e3, 1e-4, 1e-2;
+    user_drucker_prager: user_cone(UserEnergy::Reference), 50e3, 1e-4, 5e-4;
+    user_drucker_prager_energies: user_cone(UserEnergy::Library), 50e3, 1e-4, 5e-4;
     von_mises: Material::plastic(SOIL, DruckerPrager::von_mises(50e3)), 0.0, 1e-4, 2e-3;
 }

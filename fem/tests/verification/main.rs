@@ -39,4 +39,5 @@ mod plasticity_point;
 mod prescribed;
 mod static_cases;
 mod support;
+mod user_material;
 mod window;

@@ -24,6 +24,12 @@ pub use windows::*;
 
 use std::io;
 
+/// Message of the system on a library.
+fn reason(error: &libloading::Error) -> String {
+    let source = std::error::Error::source(error).map(ToString::to_string);
+    source.unwrap_or_else(|| error.to_string())
+}
+
 /// I/O error with a remedy.
 pub fn words(error: &io::Error) -> String {
     let remedy = if lacks_files(error) { "; raise the limit of open files (ulimit -n)" } else { "" };

@@ -27,6 +27,17 @@ pub fn prepare() {
     end_at_abort();
 }
 
+/// Loads a shared library and resolves all its symbols.
+///
+/// # Errors
+/// Message of the system, with the file.
+pub fn open_library(path: &Path) -> Result<libloading::Library, String> {
+    use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW};
+    // SAFETY: initialisers run with the rights of the user who names the library.
+    let library = unsafe { Library::open(Some(path), RTLD_NOW | RTLD_LOCAL) };
+    library.map(Into::into).map_err(|error| super::reason(&error))
+}
+
 /// Makes an abort, such as a stack overflow, exit with code 3 and one line.
 fn end_at_abort() {
     const LINE: &[u8] = b"error: memory: found none free, or a stack overflow. Reduce the scene, or raise the system limits (ulimit -v, ulimit -s).\n";

@@ -28,6 +28,16 @@ pub const BROWSER: &str = "explorer";
 
 pub fn prepare() {}
 
+/// Loads a shared library with all its symbols.
+///
+/// # Errors
+/// Message of the system.
+pub fn open_library(path: &Path) -> Result<libloading::Library, String> {
+    // SAFETY: initialisers run with the rights of the user who names the library.
+    unsafe { libloading::Library::new(path) }
+        .map_err(|error| format!("{}: {}", path.display(), super::reason(&error)))
+}
+
 /// Writes to standard error in one call, without allocation.
 pub fn write_error(line: &[u8]) {
     let mut written = 0;

@@ -149,7 +149,7 @@ pub fn write_tables(model: &Model, state: &State, reactions: &[f64], dir: &Path)
     let fields = if plastic { &GAUSS[..] } else { &GAUSS[..GAUSS.len() - 1] };
     let own = if plastic { own_values(model) } else { Vec::new() };
     let columns = fields.iter().map(|(column, _)| Column::of(*column));
-    let columns = columns.chain(own.iter().map(|value| Column::new(value.name, value.unit)));
+    let columns = columns.chain(own.iter().map(|value| Column::new(&*value.name, &*value.unit)));
     let mut table = History::create(&dir.join("gauss.csv"), columns.collect())?;
     for (e, &id) in mesh.element_ids.iter().enumerate() {
         let points = stiffness_points(mesh.connectivity.kind(e), model.quadrature());
@@ -174,7 +174,7 @@ fn own_values(model: &Model) -> Vec<fem::StateValue> {
     let mut own = Vec::new();
     for value in model.materials().values().flat_map(|m| m.law.state_values()) {
         if !own.contains(value) {
-            own.push(*value);
+            own.push(value.clone());
         }
     }
     own

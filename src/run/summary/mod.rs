@@ -109,6 +109,9 @@ pub struct SolidRecord {
     /// Final reactions by support name.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub reactions: Vec<ReactionRecord>,
+    /// Libraries of user materials.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub libraries: Vec<LibraryRecord>,
     /// Factor of safety search.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub safety: Option<SafetyRecord>,

@@ -1,16 +1,20 @@
 //! Parts of `summary.json`.
 
 use crate::events::EventRecord;
+use crate::hash::Hash;
 use crate::hazard::HazardRecord;
 use crate::system::SolidView;
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 use trackbed_coupling::energy_balance::{StoredEnergy, WorkAndDissipation};
 use trackbed_coupling::interface_stability::InterfaceStabilityNumbers;
 use trackbed_coupling::scheme::{IterationStats, Scheme};
 use trackbed_coupling::stability::ContactStabilityNumbers;
 use trackbed_coupling::transfer::TransferAudit;
 use trackbed_fem::nonlinear::Statistics;
+use trackbed_fem::{Law, Material};
 use trackbed_input::model::exchange::ContactClass;
+use trackbed_input::model::solid::SolidPart;
 use trackbed_track::cycle_jump::JumpSummary;
 use trackbed_track::settlement::Fit;
 
@@ -280,6 +284,32 @@ pub struct ReactionRecord {
     pub name: String,
     /// Support force on the solid [N].
     pub force: [f64; 3],
+}
+
+/// Library of a user material.
+#[derive(Debug, Serialize)]
+pub struct LibraryRecord {
+    /// Material.
+    pub material: String,
+    /// Absolute path.
+    pub path: PathBuf,
+    /// 64-bit FNV-1a hash of the file.
+    pub hash: String,
+    /// Symbol of the routine.
+    pub routine: String,
+}
+
+impl LibraryRecord {
+    /// Libraries of a solid, by material number.
+    pub fn of(solid: &SolidPart) -> Vec<LibraryRecord> {
+        let record = |(number, material): (&u32, &Material)| {
+            let Law::UserMaterial(law) = &material.law else { return None };
+            let (path, routine) = (law.routine().path().to_path_buf(), law.routine().name().into());
+            let material = solid.material_names.get(number).cloned().unwrap_or_default();
+            Some(LibraryRecord { material, hash: Hash::of_file(&path), path, routine })
+        };
+        solid.model.materials().iter().filter_map(record).collect()
+    }
 }
 
 /// Factor of safety search.

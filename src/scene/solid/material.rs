@@ -1,9 +1,11 @@
 //! Scene tables of solid materials and their constitutive laws.
 
+use super::user_material::UserTable;
 use crate::units::{Angle, Density, Quantity, Stress};
 use crate::{Problem, setting};
 use schemars::JsonSchema;
 use serde::Deserialize;
+use std::path::{Path, PathBuf};
 use trackbed_fem::material::{
     self, Consolidation, DruckerPrager, Elastic, Hardening, Material, ModifiedCamClay, MohrCoulomb, Shear,
 };
@@ -61,6 +63,8 @@ pub struct SolidMaterial {
     pub shear_modulus: Option<Quantity<Stress>>,
     /// Lower bound of pressure in stiffness and p_c [Pa]; default 1 kPa; > 0; with `"modified_cam_clay"`.
     pub minimum_pressure: Option<Quantity<Stress>>,
+    /// Routine of a shared library; with `"umat"`.
+    pub umat: Option<UserTable>,
     /// Horizontal over vertical initial stress; default of `initial_stress`; ≥ 0.
     pub k0: Option<f64>,
 }
@@ -82,6 +86,8 @@ pub enum MaterialModel {
     Tresca,
     /// Modified Cam clay.
     ModifiedCamClay,
+    /// Routine of a shared library.
+    Umat,
 }
 
 /// Meridian of Mohr–Coulomb that the cone of Drucker–Prager passes through.
@@ -129,11 +135,11 @@ fn check(key: &'static str, value: f64, good: bool, expected: &str) -> Result<()
 const STEEPEST: f64 = 80.0 * std::f64::consts::PI / 180.0 + 1e-12;
 
 impl SolidMaterial {
-    /// Resolves the material of the solid.
+    /// Resolves the material of the solid; `locate` resolves the path of a library.
     ///
     /// # Errors
-    /// A constant is missing, out of range or unused by the model.
-    pub fn resolve(&self) -> Result<Material, MaterialFault> {
+    /// A constant is missing, out of range or unused by the model; an unusable library.
+    pub fn resolve(&self, locate: impl Fn(&Path) -> PathBuf) -> Result<Material, MaterialFault> {
         if let Some(young) = self.young {
             check("young", young.si, young.si > 0.0, "a modulus above 0")?;
         }
@@ -147,6 +153,7 @@ impl SolidMaterial {
             MaterialModel::VonMises | MaterialModel::Tresca => self.metal(self.elastic()?)?,
             MaterialModel::MohrCoulomb | MaterialModel::DruckerPrager => self.frictional(self.elastic()?)?,
             MaterialModel::ModifiedCamClay => self.cam_clay()?,
+            MaterialModel::Umat => self.user(self.elastic()?, locate)?,
         };
         match material.invalid_constant() {
             None => Ok(material),
@@ -169,6 +176,7 @@ impl SolidMaterial {
             MaterialModel::VonMises => "von_mises",
             MaterialModel::Tresca => "tresca",
             MaterialModel::ModifiedCamClay => "modified_cam_clay",
+            MaterialModel::Umat => "umat",
         }
     }
 
@@ -204,6 +212,20 @@ impl SolidMaterial {
             minimum_pressure: self.minimum_pressure.map_or(1e3, |p| p.si),
         };
         Ok(Material { elastic: law.reference(self.density.si), law: law.into() })
+    }
+
+    fn user(&self, elastic: Elastic, locate: impl Fn(&Path) -> PathBuf) -> Result<Material, MaterialFault> {
+        let Some(umat) = &self.umat else {
+            return faulty("umat", Problem::missing("a table with a `library`"));
+        };
+        let law = umat.law(&self.title(), locate);
+        law.map(|law| Material::plastic(elastic, law))
+            .map_err(|(key, problem)| MaterialFault { key, problem })
+    }
+
+    /// Name in reports.
+    pub fn title(&self) -> String {
+        if self.name.is_empty() { format!("material {}", self.id) } else { self.name.clone() }
     }
 
     fn need(&self, key: &'static str, value: Option<f64>) -> Result<f64, MaterialFault> {
@@ -302,9 +324,9 @@ impl SolidMaterial {
 
     fn refuse_idle_keys(&self) -> Result<(), MaterialFault> {
         let clay: &[&str] = &["modified_cam_clay"];
-        let others: &[&str] = &["elastic", "mohr_coulomb", "drucker_prager", "von_mises", "tresca"];
+        let others: &[&str] = &["elastic", "umat", "mohr_coulomb", "drucker_prager", "von_mises", "tresca"];
         let frictional: &[&str] = &["mohr_coulomb", "drucker_prager"];
-        let (metal, plastic) = (&others[3..], &others[1..]);
+        let (metal, plastic, user) = (&others[4..], &others[2..], &others[1..2]);
         let keys = [
             ("young", self.young.is_some(), others),
             ("lambda", self.lambda.is_some(), clay),
@@ -324,6 +346,7 @@ impl SolidMaterial {
             ("yield_stress", self.yield_stress.is_some(), metal),
             ("hardening", self.hardening.is_some(), plastic),
             ("hardening_table", self.hardening_table.is_some(), plastic),
+            ("umat", self.umat.is_some(), user),
         ];
         match keys.iter().find(|(_, present, models)| *present && !models.contains(&self.name())) {
             Some((key, _, models)) => faulty(key, Problem::no_effect(setting("model", models))),

@@ -4,6 +4,7 @@ mod analysis;
 mod boundary;
 mod material;
 mod mesh;
+mod user_material;
 
 pub use analysis::{
     Dynamics, EquationMethod, Equations, InitialStress, InitialStressMethod, LinearSolver, Newton,
@@ -12,6 +13,7 @@ pub use analysis::{
 pub use boundary::{Absorbing, Side, Support};
 pub use material::{Cone, MaterialFault, MaterialModel, SolidMaterial};
 pub use mesh::{Axis, Block, Layer, Order};
+pub use user_material::{EnergySource, RoutineThreads, TangentSource, UserState, UserTable};
 
 use super::history::History;
 use super::units::{Force, Length, Quantity, Stress, Time, Velocity};

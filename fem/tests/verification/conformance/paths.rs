@@ -21,7 +21,7 @@ pub struct Owned {
 
 impl Owned {
     pub fn point(&self) -> Point<'_> {
-        Point { state: &self.state, values: &self.values }
+        Point::new(&self.state, &self.values)
     }
 }
 
@@ -30,7 +30,7 @@ impl Case {
         let p = -self.pressure;
         let state = PointState { stress: [p, p, p, 0.0, 0.0, 0.0], ..PointState::default() };
         let mut values = vec![0.0; self.material.law.state_values().len()];
-        self.material.law.initial_values(&state.stress, &mut values);
+        self.material.law.initial_values(&self.material.elastic, &state.stress, &mut values);
         Owned { state, values }
     }
 

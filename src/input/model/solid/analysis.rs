@@ -2,7 +2,9 @@
 
 use super::initial_stress::{InitialStressKind, InitialStressPlan, initial_stress};
 use super::material::Materials;
-use crate::scene::solid::{Dynamics, LinearSolver, NewtonVariant, QuasiStatic, Solid, StrengthReduction};
+use crate::scene::solid::{
+    Dynamics, LinearSolver, MaterialModel, NewtonVariant, QuasiStatic, Solid, StrengthReduction,
+};
 use crate::scene::{SceneError, Table};
 use trackbed_fem::newmark::Newmark;
 use trackbed_fem::nonlinear::strength_reduction::ReductionOptions;
@@ -85,6 +87,11 @@ pub fn plans(
             let s = solid.below("strength_reduction", s);
             if linear {
                 return Err(s.here("elastic materials only", "a material that yields"));
+            }
+            if let Some(k) = solid.material.iter().position(|m| m.model == MaterialModel::Umat) {
+                let material = solid.row("material", &solid.material, k);
+                let remedy = "The strength of a user material cannot be divided";
+                return Err(material.conflict("model", "[solid.strength_reduction]").remedy(remedy));
             }
             Analysis::StrengthReduction(strength_reduction(&s, newton(solid)?)?)
         }

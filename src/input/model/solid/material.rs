@@ -22,12 +22,13 @@ pub struct Materials {
 pub fn materials(solid: &Table<Solid>) -> Result<Materials, SceneError> {
     let mut materials = Materials { constants: BTreeMap::new(), names: BTreeMap::new(), k0: BTreeMap::new() };
     for m in solid.rows("material", &solid.material) {
-        let constants = m.resolve().map_err(|MaterialFault { key, problem }| m.problem(key, problem))?;
+        let constants = m
+            .resolve(|file| m.locate(file))
+            .map_err(|MaterialFault { key, problem }| m.problem(key, problem))?;
         if materials.constants.insert(m.id, constants).is_some() {
             return Err(m.error("id", format!("material {} again", m.id), "each number once"));
         }
-        let name = if m.name.is_empty() { format!("material {}", m.id) } else { m.name.clone() };
-        materials.names.insert(m.id, name);
+        materials.names.insert(m.id, m.title());
         if let Some(k0) = m.check("k0", m.k0, |k0| k0 >= 0.0, "0 or more")? {
             materials.k0.insert(m.id, k0);
         }
