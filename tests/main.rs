@@ -71,6 +71,7 @@ mod suite {
     mod tutorials;
     mod validity;
     mod verdict;
+    mod verify;
     mod view;
     mod view_clients;
     mod walls;
