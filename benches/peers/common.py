@@ -11,7 +11,7 @@ the row's quantity in its unit. The script gets names of rows; the last line of 
 
     {"version": "1.2", "rows": {"NAME": {"value": 0.36, "seconds": 0.1}, "OTHER": {"error": "reason"}}}
 
-or {"missing": "reason"}. `explained` of a row states why an error exceeds the tolerance.
+or {"missing": "reason"}. `explained` of a row states why an error exceeds the tolerance. Needs Python 3.11.
 """
 
 import json, os, re, sys, time, tomllib
