@@ -81,6 +81,8 @@ pub enum Command {
     Report(ReportArgs),
     /// Run the scene of a finished run again and compare the results, file by file.
     Reproduce(ReproduceArgs),
+    /// Recompute the verification matrix: cases with a reference, here and in other programs.
+    Verify(VerifyArgs),
     /// Run a small track, about one minute, and show it in a browser.
     Demo(DemoArgs),
     /// Create a directory with a commented example scene; without arguments, list the templates.
@@ -191,6 +193,32 @@ pub struct ReproduceArgs {
     /// Threads; the results do not depend on it [default: all cores].
     #[arg(long)]
     pub threads: Option<usize>,
+}
+
+/// Arguments of `verify`.
+#[derive(Debug, Args)]
+pub struct VerifyArgs {
+    /// Compute the rows with other programs too; missing ones are skipped.
+    #[arg(long)]
+    pub peers: bool,
+    /// Only these rows or groups.
+    #[arg(long, value_name = "NAME", num_args = 1..)]
+    pub only: Vec<String>,
+    /// Results directory.
+    #[arg(long, default_value = "results/verify")]
+    pub out: PathBuf,
+    /// Cases and programs (TOML).
+    #[arg(long, value_name = "FILE", default_value = "inputs/verify/matrix.toml")]
+    pub matrix: PathBuf,
+    /// Python interpreter of the other programs.
+    #[arg(long, value_name = "FILE", default_value = "python3", requires = "peers")]
+    pub python: PathBuf,
+    /// Renew the tables and the plot of this page of the guide; needs --peers.
+    #[arg(long, value_name = "PAGE", requires = "peers", conflicts_with = "only")]
+    pub page: Option<PathBuf>,
+    /// Print errors only.
+    #[arg(long)]
+    pub quiet: bool,
 }
 
 /// Arguments of `demo`.

@@ -15,6 +15,7 @@ mod reproduce;
 mod schema;
 mod stone;
 mod study;
+mod verify;
 mod view;
 
 use crate::cli::{Command, MeshCommand, NewArgs, RunArgs};
@@ -58,6 +59,7 @@ pub fn execute(command: Command) -> Result<(), Failure> {
         Command::Element(args) => element::element(args),
         Command::Report(args) => report::report(args),
         Command::Reproduce(args) => reproduce::reproduce(args, run_scene),
+        Command::Verify(args) => verify::verify(args),
         Command::Modal(args) => {
             note_earlier_names(&args.scene, &args.set);
             print(&modal::modal(&args)?)

@@ -13,6 +13,7 @@ pub mod element;
 pub mod program;
 pub mod start;
 pub mod study;
+pub mod verify;
 
 pub use trackbed_input::{model, plausible, scene};
 pub use trackbed_io::{columns, failure, guard, mesh_tools, message, read, results, stone_tools, write};

@@ -73,6 +73,7 @@ mod suite {
     mod user_material;
     mod validity;
     mod verdict;
+    mod verify;
     mod view;
     mod view_clients;
     mod walls;

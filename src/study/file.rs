@@ -276,6 +276,8 @@ pub enum Take {
     Min,
     /// Largest less smallest value.
     Range,
+    /// Abscissa from the first to the last value that is not 0.
+    Duration,
     /// Value at `at`, linear between rows.
     At,
     /// Curve over another column.

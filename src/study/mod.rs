@@ -35,8 +35,13 @@ mod target;
 mod text;
 mod trade;
 
+pub use file::{Norm, QuantityTable};
 pub use label::file_names;
+pub use layout::{aligned, four_digits, markdown};
 pub use page::{is_study, write as report};
+pub use process::{command, verdict};
+pub use quantity::{Quantity, resolve_one as quantity};
+pub use sample::number;
 pub use score::scored;
 pub use trade::Request;
 

@@ -4,7 +4,7 @@ use crate::program;
 use std::fs::File;
 use std::io;
 use std::path::Path;
-use std::process::{Child, ExitStatus, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use trackbed_io::message::shown;
 use trackbed_io::read::source;
 use trackbed_io::system;
@@ -32,15 +32,25 @@ pub fn start(
     beginning: Beginning,
     log: &Path,
 ) -> io::Result<Child> {
-    let mut command = program::command()?;
-    command.arg("run").arg(scene).arg("--out").arg(out);
+    let mut command = command("run", scene, out, set)?;
     command.args(["--quiet", "--threads", &threads.to_string()]);
     command.arg(if beginning == Beginning::Anew { "--force" } else { "--resume" });
-    // Overrides may begin with a dash.
-    command.args(set.iter().map(|assignment| format!("--set={assignment}")));
-    command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(File::create(log)?);
+    command.stderr(File::create(log)?);
     system::set_apart(&mut command);
     command.spawn()
+}
+
+/// Prepares a command of this program on a scene, without output.
+///
+/// # Errors
+/// Executable path unknown.
+pub fn command(verb: &str, scene: &Path, out: &Path, set: &[String]) -> io::Result<Command> {
+    let mut command = program::command()?;
+    command.arg(verb).arg(scene).arg("--out").arg(out);
+    // Overrides may begin with a dash.
+    command.args(set.iter().map(|assignment| format!("--set={assignment}")));
+    command.stdin(Stdio::null()).stdout(Stdio::null());
+    Ok(command)
 }
 
 /// Requests a checkpoint and stop.

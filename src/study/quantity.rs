@@ -86,7 +86,7 @@ pub fn resolve(
     let all: Vec<Quantity> = tables
         .iter()
         .enumerate()
-        .map(|(k, table)| one(document, k, table, tolerance))
+        .map(|(k, table)| resolve_one(document, &format!("quantity.{k}"), table, tolerance))
         .collect::<Result<_, _>>()?;
     for (k, quantity) in all.iter().enumerate() {
         if all[..k].iter().any(|earlier| earlier.name == quantity.name) {
@@ -146,10 +146,19 @@ fn of_cycles(tolerance: f64) -> Vec<Quantity> {
     ]
 }
 
-fn one(document: &Document, index: usize, table: &QuantityTable, study: f64) -> Result<Quantity, SceneError> {
-    let place = |key: &str| format!("quantity.{index}.{key}");
+/// Resolves the quantity of the table at `path`; `study`: default tolerance.
+///
+/// # Errors
+/// Input errors.
+pub fn resolve_one(
+    document: &Document,
+    path: &str,
+    table: &QuantityTable,
+    study: f64,
+) -> Result<Quantity, SceneError> {
+    let place = |key: &str| format!("{path}.{key}");
     let fault = |key: &str, found: String, expected: &str| Err(document.error(&place(key), found, expected));
-    let source = source_of(document, index, table)?;
+    let source = source_of(document, path, table)?;
     let default = match &source {
         Source::Summary(path) => path.rsplit('.').next().unwrap_or(path).to_string(),
         Source::Column(Reduced { columns, .. }) | Source::Curve { columns, .. } => columns.join(" + "),
@@ -183,8 +192,8 @@ fn one(document: &Document, index: usize, table: &QuantityTable, study: f64) -> 
     Ok(Quantity { name, unit, factor, source, norm, scale: table.scale, exact: table.exact, tolerance })
 }
 
-fn source_of(document: &Document, index: usize, table: &QuantityTable) -> Result<Source, SceneError> {
-    let place = |key: &str| format!("quantity.{index}.{key}");
+fn source_of(document: &Document, path: &str, table: &QuantityTable) -> Result<Source, SceneError> {
+    let place = |key: &str| format!("{path}.{key}");
     let problem = |key: &str, problem: Problem| Err(document.problem(&place(key), problem));
     let fault = |key: &str, found: &str, expected: &str| problem(key, Problem::value(found, expected));
     let of_table = [

@@ -50,6 +50,17 @@ pub fn read(quantity: &Quantity, folder: &Path) -> Result<(Sample, String), Stri
     Ok((sample, unit))
 }
 
+/// Reads a quantity that is a number.
+///
+/// # Errors
+/// Missing file, column or number; a curve.
+pub fn number(quantity: &Quantity, folder: &Path) -> Result<f64, String> {
+    match read(quantity, folder)?.0 {
+        Sample::Number(value) => Ok(value),
+        Sample::Curve(_) => Err("a curve is no number".into()),
+    }
+}
+
 fn reduce(reduced: &Reduced, points: Vec<[f64; 2]>) -> Result<f64, String> {
     let value = |at: f64| {
         let Sample::Curve(points) = Sample::curve(points.clone()) else { unreachable!("a curve") };
@@ -59,8 +70,8 @@ fn reduce(reduced: &Reduced, points: Vec<[f64; 2]>) -> Result<f64, String> {
     if let Some(at) = reduced.at {
         return Ok(value(at)? - zero);
     }
-    let kept = points.iter().filter(|p| reduced.from.is_none_or(|from| p[0] >= from));
-    let values: Vec<f64> = kept.map(|p| p[1] - zero).collect();
+    let kept = || points.iter().filter(|p| reduced.from.is_none_or(|from| p[0] >= from));
+    let values: Vec<f64> = kept().map(|p| p[1] - zero).collect();
     let Some(last) = values.last() else {
         let from = reduced.from.map_or(String::new(), |from| format!(" from {from} on"));
         return Err(format!("{} has no rows{from}", reduced.file));
@@ -73,6 +84,10 @@ fn reduce(reduced: &Reduced, points: Vec<[f64; 2]>) -> Result<f64, String> {
         Take::Max => largest(),
         Take::Min => least(),
         Take::Range => largest() - least(),
+        Take::Duration => {
+            let mut active = kept().filter(|p| p[1] - zero != 0.0).map(|p| p[0]);
+            active.next().map_or(0.0, |first| active.next_back().unwrap_or(first) - first)
+        }
     })
 }
 
@@ -184,6 +199,8 @@ mod tests {
         assert_eq!(of(reduced(Take::Range)), 4.0);
         assert_eq!(of(Reduced { from: Some(2.0), ..reduced(Take::Range) }), 1.0);
         assert_eq!(of(Reduced { from: Some(1.5), ..reduced(Take::Max) }), 4.0);
+        assert_eq!(of(reduced(Take::Duration)), 4.0);
+        assert_eq!(of(Reduced { since: Some(0.0), ..reduced(Take::Duration) }), 3.0);
         assert_eq!(of(Reduced { at: Some(3.0), ..reduced(Take::At) }), 3.5);
         assert_eq!(of(Reduced { at: Some(3.0), since: Some(0.5), ..reduced(Take::At) }), 0.5);
         assert_eq!(of(Reduced { since: Some(0.0), ..reduced(Take::Last) }), 3.0);

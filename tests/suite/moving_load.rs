@@ -3,44 +3,7 @@
 use super::support::{Folder, Table, repository, trackbed};
 
 /// Simply supported beam of 20 m, 1 m × 1 m, E 30 GPa, 2,500 kg/m³; 100 kN at 40 m/s.
-const BEAM: &str = r#"title = "Moving force on a beam"
-[solid]
-gravity = false
-[solid.block]
-x = { lines = [-0.5, 0.5], counts = [1] }
-y = { lines = [0.0, 20.0], counts = [20] }
-z = { lines = [-0.5, 0.0, 0.5], counts = [1, 1] }
-[solid.dynamics]
-[[solid.material]]
-id = 1
-young = "30 GPa"
-poisson = 0.0
-density = 2500
-[[solid.support]]
-nodes_in = [[-0.5, 0, 0], [0.5, 0, 0]]
-directions = ["y", "z"]
-[[solid.support]]
-nodes_in = [[-0.5, 20, 0], [0.5, 20, 0]]
-directions = ["z"]
-[[solid.support]]
-side = "x-"
-directions = ["x"]
-[[solid.load]]
-kind = "moving"
-path = [[0, 0, 0.5], [0, 20, 0.5]]
-force = [0, 0, "-100 kN"]
-speed = "40 m/s"
-[[probe]]
-name = "middle"
-at = [0, 10, 0]
-[time]
-end = 0.6
-solid_step = "1 ms"
-[output]
-frames = 0
-vtk = false
-history_interval = "5 ms"
-"#;
+const BEAM: &str = include_str!("../../inputs/verify/moving_force.toml");
 
 /// Midspan deflection, undamped: Fryba, Vibration of Solids and Structures under Moving Loads, 1999, chapter 1.
 fn deflection(t: f64, speed: f64) -> f64 {
@@ -81,7 +44,7 @@ fn axles_and_patch_follow() {
         .replace("[solid.dynamics]", "[solid.quasi_static]")
         .replace("end = 0.6", "end = 0.3")
         .replace("solid_step = \"1 ms\"", "solid_step = \"25 ms\"")
-        .replace("history_interval = \"5 ms\"", "history_interval = \"25 ms\"")
+        .replace("history_interval = \"1 ms\"", "history_interval = \"25 ms\"")
         .replace(
             "[[solid.support]]\nnodes_in = [[-0.5, 0, 0]",
             "[[solid.support]]\nname = \"start\"\nnodes_in = [[-0.5, 0, 0]",
@@ -255,7 +218,7 @@ fn vanishing_loads_leave_nothing() {
     let scene = BEAM
         .replace("[solid.dynamics]", "[solid.quasi_static]")
         .replace("solid_step = \"1 ms\"", "solid_step = \"50 ms\"")
-        .replace("history_interval = \"5 ms\"", "history_interval = \"50 ms\"");
+        .replace("history_interval = \"1 ms\"", "history_interval = \"50 ms\"");
     let out = folder.join("out").display().to_string();
     let of = |name: &str, text: &str| {
         let file = folder.write(name, text).display().to_string();
