@@ -53,9 +53,9 @@ pub struct Formula {
     name: String,
     kind: u8,
     force: Program,
-    damping: Option<Program>,
+    /// Force, and dashpot coefficient or loss.
+    step: Program,
     energy: Option<Program>,
-    loss: Option<Program>,
 }
 
 /// Mistake in one of [`Texts`].
@@ -96,21 +96,31 @@ impl Formula {
         constants: &BTreeMap<String, f64>,
     ) -> Result<Formula, InvalidFormula> {
         use Variable::*;
-        let of = |key: &'static str, text: &str, variables: &[Variable]| {
-            let pair = [Radius, Stiffness, Modulus, DampingRatio, Restitution];
-            let variables = [&pair, variables].concat();
-            parse::parse(text, constants, &variables)
+        let pair = [Radius, Stiffness, Modulus, DampingRatio, Restitution];
+        let add = |to: &mut Program, key: &'static str, text: &str, own: &[Variable]| {
+            parse::parse(to, text, constants, &[&pair, own].concat())
                 .map_err(|e| InvalidFormula { key, problem: FormulaProblem::Text(e) })
         };
         let invalid = |key, problem| Err(InvalidFormula { key, problem });
         let spring = [Overlap, Largest];
-        let step = [Overlap, Largest, InverseMass, Step];
-        let force = of("force", texts.force, &spring)?;
-        let energy = texts.energy.map(|t| of("energy", t, &spring)).transpose()?;
-        let damping = texts.damping.map(|t| of("damping", t, &step)).transpose()?;
-        let loss = texts.loss.map(|t| of("loss", t, &[Largest, LargestBefore])).transpose()?;
-        let all = || [Some(&force), damping.as_ref(), energy.as_ref(), loss.as_ref()].into_iter().flatten();
-        let uses = |v| all().any(|p| p.uses(v));
+        let (mut force, mut energy) = (Program::default(), None);
+        add(&mut force, "force", texts.force, &spring)?;
+        if let Some(text) = texts.energy {
+            add(
+                energy.insert(Program::default()),
+                "energy",
+                text,
+                if force.uses(Largest) { &spring } else { &spring[..1] },
+            )?;
+        }
+        let mut step = force.clone();
+        if let Some(text) = texts.damping {
+            add(&mut step, "damping", text, &[Overlap, InverseMass, Step])?;
+        }
+        if let Some(text) = texts.loss.filter(|_| texts.damping.is_none() || !force.uses(Largest)) {
+            add(&mut step, "loss", text, &[Largest, LargestBefore])?;
+        }
+        let uses = |v| step.uses(v) || energy.as_ref().is_some_and(|p: &Program| p.uses(v));
         let kind = match (force.uses(Largest), uses(Modulus), uses(Stiffness)) {
             (_, true, true) => return invalid("force", FormulaProblem::Both),
             (true, true, _) => {
@@ -120,7 +130,7 @@ impl Formula {
             (false, true, _) => MODULUS,
             (false, false, _) => STIFFNESS,
         };
-        match (kind, &damping, &energy, &loss) {
+        match (kind, texts.damping, texts.energy, texts.loss) {
             (MEMORY, Some(_), ..) => {
                 return invalid("damping", FormulaProblem::Idle("laws with `D` have no dashpot"));
             }
@@ -142,7 +152,7 @@ impl Formula {
             }
             _ => {}
         }
-        Ok(Formula { name: name.to_string(), kind, force, damping, energy, loss })
+        Ok(Formula { name: name.to_string(), kind, force, step, energy })
     }
 
     /// Keeps the formula for the life of the process; equal ones once.
@@ -224,10 +234,10 @@ impl<const KIND: u8, R: Real> FormulaLaw<KIND, R> {
     }
 }
 
-/// Value of a formula, zero if absent.
+/// Values of formulas, zero if absent.
 #[inline(always)]
-fn value<R: Real>(program: Option<&Program>, values: &Values<R>) -> R {
-    program.map_or(R::zero(), |p| p.evaluate(values))
+fn results<R: Real, const RESULTS: usize>(program: Option<&Program>, values: &Values<R>) -> [R; RESULTS] {
+    program.map_or([R::zero(); RESULTS], |p| p.evaluate(values))
 }
 
 /// Nodes and weights of Gauss's rule on [0, 1].
@@ -303,23 +313,23 @@ impl<const KIND: u8> NormalLaw for FormulaLaw<KIND> {
         let mut values = law.values(overlap, [before, largest], touch.radius);
         values[Variable::InverseMass as usize] = touch.inverse_mass;
         values[Variable::Step as usize] = touch.step;
-        let force = value(law.formula.map(|f| &f.force), &values);
+        let [force, other] = results(law.formula.map(|f| &f.step), &values);
         let circle = (touch.radius * overlap).sqrt();
         let before = if KIND == MODULUS { (touch.radius * touch.overlap_before()).sqrt() } else { circle };
         Response {
             elastic: if KIND == MEMORY { force.max(R::zero()) } else { force },
-            damping: value(law.formula.and_then(|f| f.damping.as_ref()), &values),
+            damping: if KIND == MEMORY { R::zero() } else { other },
             circle,
             circle_before: before,
             remembered: if KIND == MEMORY { largest } else { touch.remembered },
-            lost: value(law.formula.and_then(|f| f.loss.as_ref()), &values),
+            lost: if KIND == MEMORY { other } else { R::zero() },
         }
     }
 
     #[inline(always)]
     fn force(&self, overlap: f64, radius: f64, remembered: f64) -> f64 {
         let largest = Self::largest(overlap, remembered);
-        let force = value(self.formula.map(|f| &f.force), &self.values(overlap, [largest; 2], radius));
+        let [force] = results(self.formula.map(|f| &f.force), &self.values(overlap, [largest; 2], radius));
         if KIND == MEMORY { force.max(0.0) } else { force }
     }
 
@@ -328,7 +338,7 @@ impl<const KIND: u8> NormalLaw for FormulaLaw<KIND> {
             None => self.work(overlap, radius),
             Some(energy) => {
                 let largest = Self::largest(overlap, remembered);
-                energy.evaluate(&self.values(overlap, [largest; 2], radius))
+                energy.evaluate::<f64, 1>(&self.values(overlap, [largest; 2], radius))[0]
             }
         }
     }

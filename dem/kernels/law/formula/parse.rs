@@ -45,29 +45,25 @@ pub enum FormulaError {
     Long(#[from] TooLong),
 }
 
-/// Parses a formula; `constants` are further names, `variables` those that it may use.
+/// Adds a formula to `program`; `constants` are further names, `variables` those that it may use.
 ///
 /// # Errors
 /// [`FormulaError`].
 pub fn parse(
+    program: &mut Program,
     text: &str,
     constants: &BTreeMap<String, f64>,
     variables: &[Variable],
-) -> Result<Program, FormulaError> {
-    let mut parser = Parser {
-        text: text.char_indices().collect(),
-        at: 0,
-        program: Program::default(),
-        constants,
-        variables,
-        defined: BTreeMap::new(),
-        unused: BTreeSet::new(),
-    };
+) -> Result<(), FormulaError> {
+    let text = text.char_indices().collect();
+    let (defined, unused) = (BTreeMap::new(), BTreeSet::new());
+    let mut parser = Parser { text, at: 0, program, constants, variables, defined, unused };
     let result = parser.statements()?;
     if let Some(name) = parser.unused.into_iter().next() {
         return Err(FormulaError::Unused(name));
     }
-    Ok(parser.program.ended(result))
+    program.returns(result);
+    Ok(())
 }
 
 /// Whether a name may be that of a constant.
@@ -82,7 +78,7 @@ pub fn is_free_name(name: &str) -> bool {
 struct Parser<'a> {
     text: Vec<(usize, char)>,
     at: usize,
-    program: Program,
+    program: &'a mut Program,
     constants: &'a BTreeMap<String, f64>,
     variables: &'a [Variable],
     defined: BTreeMap<String, u8>,
@@ -326,11 +322,12 @@ mod tests {
 
     fn value(text: &str) -> Result<f64, FormulaError> {
         let constants = BTreeMap::from([("k".to_string(), 3.0)]);
-        let program = parse(text, &constants, &VARIABLES.map(|(_, v)| v))?;
+        let mut program = Program::default();
+        parse(&mut program, text, &constants, &VARIABLES.map(|(_, v)| v))?;
         let mut values = [0.0; VARIABLES.len()];
         values[Variable::Overlap as usize] = 4.0;
         values[Variable::Radius as usize] = 9.0;
-        Ok(program.evaluate::<f64>(&values))
+        Ok(program.evaluate::<f64, 1>(&values)[0])
     }
 
     #[test]
@@ -378,7 +375,8 @@ mod tests {
     #[test]
     fn derivatives_match_differences() {
         let text = "a = sqrt(R*d); max(2/3*a*d - 1/(1 + d), d^2.5 - abs(d - 5)) + below(d, R, d*d, 0)";
-        let program = parse(text, &BTreeMap::new(), &VARIABLES.map(|(_, v)| v)).unwrap();
+        let mut program = Program::default();
+        parse(&mut program, text, &BTreeMap::new(), &VARIABLES.map(|(_, v)| v)).unwrap();
         let mut values = [0.0; VARIABLES.len()];
         values[Variable::Radius as usize] = 9.0;
         let mut rates = [0.0; VARIABLES.len()];

@@ -1,6 +1,7 @@
 //! Formulas as lists of operations, evaluated over [`Real`] and with derivatives.
 
 use crate::lanes::Real;
+use std::mem::MaybeUninit;
 
 /// Most operations of a formula.
 pub const MOST_OPERATIONS: usize = 64;
@@ -65,10 +66,11 @@ pub(super) enum Operation {
     Below(u8, u8, u8, u8),
 }
 
-/// Formula.
+/// One formula, or several that share operations.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Program {
     operations: Vec<Operation>,
+    results: Vec<u8>,
 }
 
 /// More than [`MOST_OPERATIONS`].
@@ -90,11 +92,9 @@ impl Program {
         Ok(self.operations.len() as u8 - 1)
     }
 
-    /// Ends the list with `result`.
-    pub(super) fn ended(mut self, result: u8) -> Program {
-        let result = result as usize;
-        self.operations.truncate(result + 1);
-        self
+    /// Adds a result.
+    pub(super) fn returns(&mut self, result: u8) {
+        self.results.push(result);
     }
 
     /// Value of an operation that is a constant.
@@ -126,14 +126,15 @@ impl Program {
         self.operations.contains(&Operation::Variable(variable))
     }
 
-    /// Evaluates the formula.
-    #[inline(never)]
-    pub fn evaluate<R: Real>(&self, values: &Values<R>) -> R {
+    /// Evaluates the formulas; results that do not exist are zero.
+    #[inline(always)]
+    pub fn evaluate<R: Real, const RESULTS: usize>(&self, values: &Values<R>) -> [R; RESULTS] {
         use Operation::*;
-        let mut found = [R::zero(); MOST_OPERATIONS];
-        for (k, operation) in self.operations.iter().enumerate() {
-            let v = |k: u8| found[k as usize];
-            found[k] = match *operation {
+        let mut found = [MaybeUninit::<R>::uninit(); MOST_OPERATIONS];
+        for (k, operation) in self.operations.iter().enumerate().take(MOST_OPERATIONS) {
+            // SAFETY: `put` appends an operation after its operands, which are therefore computed.
+            let v = |k: u8| unsafe { found[k as usize].assume_init() };
+            let value = match *operation {
                 Constant(x) => R::splat(x),
                 Variable(x) => values[x as usize],
                 Negate(a) => -v(a),
@@ -147,11 +148,17 @@ impl Program {
                 Max(a, b) => v(a).max(v(b)),
                 Below(a, b, yes, no) => R::select(v(a).lt(v(b)), v(yes), v(no)),
             };
+            found[k] = MaybeUninit::new(value);
         }
-        self.operations.len().checked_sub(1).map_or(R::zero(), |last| found[last])
+        let mut results = [R::zero(); RESULTS];
+        for (result, k) in results.iter_mut().zip(&self.results) {
+            // SAFETY: results are operations of the list, all computed above.
+            *result = unsafe { found[*k as usize].assume_init() };
+        }
+        results
     }
 
-    /// Value, and derivative along `rates` of the variables.
+    /// First value, and its derivative along `rates` of the variables.
     pub fn derivative(&self, values: &Values<f64>, rates: &Values<f64>) -> (f64, f64) {
         use Operation::*;
         let mut found = [(0.0_f64, 0.0_f64); MOST_OPERATIONS];
@@ -196,6 +203,6 @@ impl Program {
                 }
             };
         }
-        self.operations.len().checked_sub(1).map_or((0.0, 0.0), |last| found[last])
+        self.results.first().map_or((0.0, 0.0), |k| found[*k as usize])
     }
 }
