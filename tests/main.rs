@@ -39,6 +39,7 @@ mod suite {
     mod mumps;
     mod nets;
     mod observe;
+    mod own_law;
     mod packings;
     mod periodic;
     mod plausible;

@@ -645,6 +645,28 @@ class ConeRegion(_ConeRegion, total=False):
     to: Required[Quantities]
 
 
+class ContactLawTable(TypedDict, total=False):
+    """`[contact_law]`: an own normal law by formulas."""
+
+    # Named numbers `[["name", value], …]`; default none.
+    constants: FloatRows
+
+    # Dashpot coefficient [N s/m], a formula; default none; not with `D` in `force`.
+    damping: str
+
+    # Spring energy [J], a formula; default integrated; needed with `D`.
+    energy: str
+
+    # Spring force [N], a formula.
+    force: Required[str]
+
+    # Energy dissipated in a step [J], a formula; with `D` in `force`.
+    loss: str
+
+    # Name, for `normal` of materials and pairs.
+    name: Required[str]
+
+
 class ContactPoint(TypedDict, total=False):
     """A contact-point bond."""
 
@@ -2708,6 +2730,9 @@ class SceneTables(TypedDict, total=False):
 
     # Constants of material pairs.
     contact: Sequence[PairContact]
+
+    # Own contact law by formulas.
+    contact_law: ContactLawTable
 
     # Coupling of grains and solid.
     coupling: Coupling

@@ -219,6 +219,7 @@ fn grain_lines(
     };
     let stages = stages::of(job).flat_map(|s| s.report(job, &steps));
     lines.extend(stages.map(|line| format!("  {line}").into()));
+    lines.extend(grains.materials.law_lines.iter().map(|line| format!("  {line}").into()));
     lines.extend(grains.groups.filled.iter().map(|bed| format!("  {}", bed.line()).into()));
     lines.extend(grains.groups.remarks.iter().map(|remark| format!("  warning: {remark}").into()));
     Ok((model, lines))

@@ -66,6 +66,8 @@ pub struct Scene {
     /// Constants of material pairs.
     #[serde(default)]
     pub contact: Vec<material::PairContact>,
+    /// Own contact law by formulas.
+    pub contact_law: Option<material::ContactLawTable>,
     /// Groups of grains.
     #[serde(default)]
     pub grains: Vec<grains::Grains>,

@@ -98,6 +98,25 @@ pub struct PairContact {
     pub twisting_friction: Option<f64>,
 }
 
+/// `[contact_law]`: an own normal law by formulas.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ContactLawTable {
+    /// Name, for `normal` of materials and pairs.
+    pub name: String,
+    /// Spring force [N], a formula.
+    pub force: String,
+    /// Dashpot coefficient [N s/m], a formula; default none; not with `D` in `force`.
+    pub damping: Option<String>,
+    /// Spring energy [J], a formula; default integrated; needed with `D`.
+    pub energy: Option<String>,
+    /// Energy dissipated in a step [J], a formula; with `D` in `force`.
+    pub loss: Option<String>,
+    /// Named numbers `[["name", value], …]`; default none.
+    #[serde(default)]
+    pub constants: Vec<(String, f64)>,
+}
+
 /// `contact.damping`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

@@ -3,6 +3,7 @@
 //! Theory manual: eq. (1.2), `docs/theory/contacts.md`.
 
 use super::damping::Damping;
+use super::formula::Formula;
 
 /// Contact material. Law of a pair: [`PairOverride::normal`], else the common [`Material::normal`], else
 /// Hertz with a Young's modulus, linear with a stiffness.
@@ -41,6 +42,8 @@ pub struct Material {
     pub twisting_friction: f64,
     /// Normal law; `None`: from the constants.
     pub normal: Option<LawName>,
+    /// Formulas of an own normal law.
+    pub formula: Option<&'static Formula>,
 }
 
 impl Material {
@@ -62,6 +65,7 @@ impl Material {
         rolling_friction: 0.0,
         twisting_friction: 0.0,
         normal: None,
+        formula: None,
     };
 
     /// Soft frictional material of tests.
@@ -101,6 +105,8 @@ pub struct PairOverride {
     pub adhesion: Option<f64>,
     /// Normal law.
     pub normal: Option<LawName>,
+    /// Formulas of an own normal law.
+    pub formula: Option<&'static Formula>,
     /// Tangential law; `None`: by normal law.
     pub tangential: Option<LawName>,
     /// Damping; `None`: from restitution.
@@ -118,6 +124,11 @@ pub struct LawName(pub(super) &'static str);
 impl LawName {
     /// No tangential force.
     pub const NONE: LawName = LawName("none");
+
+    /// Row of an own law.
+    pub fn of(formula: &Formula) -> LawName {
+        LawName(formula.law())
+    }
 
     /// Scene name.
     pub fn as_str(&self) -> &'static str {

@@ -11,6 +11,7 @@
 use super::constants::constants;
 use super::hertz::Hertz;
 use super::material::{LawName, Material, Pair};
+use super::normal::NormalLaw;
 use super::tangential::{SpringInput, SpringTransfer, TangentialLaw};
 use crate::lanes::Real;
 
@@ -32,13 +33,18 @@ pub(super) fn shear(pair: &Pair<'_>) -> f64 {
     1.0 / (soft(pair.a) + soft(pair.b))
 }
 
-impl TangentialLaw<Hertz> for Mindlin {
+/// Normal law whose contact has a circle of radius √(R d).
+pub trait CircularContact: NormalLaw {}
+
+impl CircularContact for Hertz {}
+
+impl<N: CircularContact> TangentialLaw<N> for Mindlin {
     const NAME: &'static str = "mindlin";
     const SOURCE: &'static str =
         "contact, tangential: Mindlin, J. Appl. Mech. 16, 1949; Elata & Berryman, Mech. Mater. 24, 1996";
     const KEYS: &'static [&'static str] = &["young", "poisson"];
 
-    fn mix(pair: &Pair<'_>, _: &Hertz) -> Mindlin {
+    fn mix(pair: &Pair<'_>, _: &N) -> Mindlin {
         Mindlin { shear: shear(pair) }
     }
 

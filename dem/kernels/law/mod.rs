@@ -12,6 +12,7 @@ mod constants;
 mod contact;
 mod contact_law;
 pub mod damping;
+pub mod formula;
 pub mod half_step_damping;
 pub mod hertz;
 #[doc(hidden)]

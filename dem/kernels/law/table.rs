@@ -4,6 +4,7 @@ use super::any_law::combinations;
 use super::composed::Composed;
 use super::conical_damage::ConicalDamage;
 use super::contact_law::ContactLaw;
+use super::formula::{self, FormulaLaw, MEMORY, MODULUS, STIFFNESS};
 use super::hertz::Hertz;
 use super::linear::Linear;
 use super::material::{LawName, Material, Pair};
@@ -21,6 +22,9 @@ combinations! {
     Hertz(Hertz, Mindlin) = "Hertz-Mindlin",
     WaltonBraun(WaltonBraun, Spring) = "Walton-Braun",
     Conical(ConicalDamage, RoughMindlin) = "Hertz-Mindlin with conical damage",
+    Formula(FormulaLaw<MODULUS>, Mindlin) = "own law, Mindlin",
+    FormulaStiffness(FormulaLaw<STIFFNESS>, Spring) = "own law, spring",
+    FormulaMemory(FormulaLaw<MEMORY>, Spring) = "own law with memory, spring",
 }
 
 /// Linear law.
@@ -75,9 +79,14 @@ pub(super) fn title([normal, tangential]: [&str; 2]) -> &'static str {
     row.map_or("a separate law", |c| c.title)
 }
 
+/// Whether a row has a name in scenes.
+fn is_shipped(row: &LawInfo) -> bool {
+    !formula::NAMES.contains(&row.normal)
+}
+
 /// Returns a normal law by name.
 pub fn normal_named(name: &str) -> Option<LawName> {
-    COMBINATIONS.iter().find(|c| c.normal == name).map(|c| LawName(c.normal))
+    COMBINATIONS.iter().find(|c| c.normal == name && is_shipped(c)).map(|c| LawName(c.normal))
 }
 
 /// Returns a tangential law by name, or [`LawName::NONE`].
@@ -88,7 +97,7 @@ pub fn tangential_named(name: &str) -> Option<LawName> {
 
 /// Normal laws.
 pub fn normals() -> Vec<&'static str> {
-    once(COMBINATIONS.iter().map(|c| c.normal))
+    once(COMBINATIONS.iter().filter(|c| is_shipped(c)).map(|c| c.normal))
 }
 
 /// Tangential laws and [`LawName::NONE`].

@@ -1,10 +1,12 @@
 //! SIMD lanes and single contacts: bitwise identical.
 
+use super::own;
 use super::{MASS, Path, law, plain};
 use crate::base::Vec3;
 use crate::lanes::{Kernel, Simd, SimdPack, V3, run};
+use crate::law::material::LawName;
 use crate::law::material::{Material, Pair, PairOverride};
-use crate::law::table::{AnyLaw, COMBINATIONS, normal_named, tangential_named};
+use crate::law::table::{AnyLaw, COMBINATIONS, tangential_named};
 use crate::law::{ContactGeometry, ContactLaw, History, HistoryLanes, LawInput, NO_CONTACT};
 
 #[derive(Clone, Copy)]
@@ -121,7 +123,8 @@ fn mixed_laws_are_bitwise_identical() {
     let mixed = |l: usize| -> AnyLaw {
         let row = &COMBINATIONS[l % COMBINATIONS.len()];
         let exception = PairOverride {
-            normal: normal_named(row.normal),
+            normal: Some(LawName(row.normal)),
+            formula: own::of_row(row.normal),
             tangential: tangential_named(row.tangential),
             ..PairOverride::default()
         };

@@ -3,9 +3,12 @@
 mod energy;
 mod force;
 mod lanes;
+mod own;
 
 use super::composed::Composed;
+use super::formula::{FormulaLaw, MEMORY, MODULUS, STIFFNESS};
 use super::material::{Material, Pair};
+use super::mindlin::Mindlin;
 use super::spring::Spring;
 use super::table::{ConicalLaw, HertzLaw, LinearLaw, RoughLaw};
 use super::walton_braun::WaltonBraun;
@@ -85,6 +88,12 @@ conforms! {
     hertz: HertzLaw, GLASS;
     walton_braun: Composed<WaltonBraun, Spring>, SOFT;
     conical_whole: ConicalLaw, Material { corner_strength: 4e7, corner_angle: 0.2, ..GLASS };
+}
+
+conforms! {
+    own_hertz: Composed<FormulaLaw<MODULUS>, Mindlin>, own::hertz();
+    own_linear: Composed<FormulaLaw<STIFFNESS>, Spring>, own::linear();
+    own_memory: Composed<FormulaLaw<MEMORY>, Spring>, own::memory();
 }
 
 const CRUSHING: Material = Material {

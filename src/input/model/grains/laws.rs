@@ -38,8 +38,10 @@ pub(super) fn check_laws(
             let there = [("stiffness", m.stiffness.is_some()), ("young", m.young.is_some())];
             if let Some((key, _)) = there.iter().find(|(key, there)| own.normal_keys.contains(key) && !there)
             {
-                let expected =
-                    format!("a value for this key, which `normal = \"{}\"` needs", normal.as_str());
+                let expected = format!(
+                    "a value for this key, which `normal = \"{}\"` needs",
+                    m.normal.as_deref().unwrap_or(normal.as_str())
+                );
                 return Err(m.missing(key, expected));
             }
         }

@@ -2,12 +2,14 @@
 
 use super::check::find;
 use super::laws;
+use super::own_law;
 use super::sources;
 use crate::scene::material::{DampingKind, GrainMaterial, PairContact, Resistance};
 use crate::scene::{Scene, SceneError, Table};
 use std::f64::consts::FRAC_PI_2;
 use trackbed_dem::law::conical_damage;
 use trackbed_dem::law::damping::Damping;
+use trackbed_dem::law::formula::Formula;
 use trackbed_dem::law::parameter::{self, Parameter};
 use trackbed_dem::law::table;
 use trackbed_dem::material::LawName;
@@ -22,6 +24,8 @@ pub struct MaterialsPart {
     pub pairs: Vec<PairOverride>,
     /// Materials of grains.
     pub of_grains: Vec<usize>,
+    /// Checks of an own law, for `check`.
+    pub law_lines: Vec<String>,
     pub(super) names: Vec<String>,
     /// Stiffness over the mean, by material; 1 beyond its end.
     pub(super) factors: Vec<f64>,
@@ -64,14 +68,16 @@ impl MaterialsPart {
 }
 
 pub(super) fn build(scene: &Table<Scene>) -> Result<MaterialsPart, SceneError> {
-    let all = materials(scene)?;
-    let pairs = pairs(scene)?;
+    let own = own_law::own_law(scene)?;
+    let all = materials(scene, own)?;
+    let pairs = pairs(scene, own)?;
     laws::check_laws(scene, &all, &pairs)?;
+    let law_lines = own_law::checked(scene, own, (&all, &pairs))?;
     let names = scene.material.iter().map(|m| m.name.clone()).collect();
-    Ok(MaterialsPart { all, pairs, of_grains: Vec::new(), names, factors: Vec::new() })
+    Ok(MaterialsPart { all, pairs, of_grains: Vec::new(), law_lines, names, factors: Vec::new() })
 }
 
-fn materials(scene: &Table<Scene>) -> Result<Vec<Material>, SceneError> {
+fn materials(scene: &Table<Scene>, own: Option<&'static Formula>) -> Result<Vec<Material>, SceneError> {
     let mut out = Vec::new();
     for (i, m) in scene.rows("material", &scene.material).enumerate() {
         if scene.material[..i].iter().any(|other| other.name == m.name) {
@@ -81,7 +87,8 @@ fn materials(scene: &Table<Scene>) -> Result<Vec<Material>, SceneError> {
         m.check("stiffness", m.stiffness, |_| true, "a finite stiffness")?;
         m.check("corner_strength", m.corner_strength, |_| true, "a finite strength")?;
         m.check("asperity_pressure", m.asperity_pressure, |_| true, "a finite pressure")?;
-        let material = Material { normal: normal(&m, m.normal.as_deref())?, ..parameters(&m) };
+        let (normal, formula) = normal(&m, m.normal.as_deref(), own)?;
+        let material = Material { normal, formula, ..parameters(&m) };
         poisson_beside_young(&m)?;
         corner_keys(&m)?;
         check_ranges(&m, &parameter::MATERIAL, &material)?;
@@ -112,6 +119,7 @@ pub fn parameters(m: &GrainMaterial) -> Material {
         rolling_friction: m.rolling_friction,
         twisting_friction: m.twisting_friction,
         normal: None,
+        formula: None,
     }
 }
 
@@ -177,11 +185,20 @@ fn poisson_beside_young(m: &Table<GrainMaterial>) -> Result<(), SceneError> {
     }
 }
 
-fn normal<T>(table: &Table<T>, name: Option<&str>) -> Result<Option<LawName>, SceneError> {
-    let Some(name) = name else { return Ok(None) };
+type Normal = (Option<LawName>, Option<&'static Formula>);
+
+fn normal<T>(
+    table: &Table<T>,
+    name: Option<&str>,
+    own: Option<&'static Formula>,
+) -> Result<Normal, SceneError> {
+    let Some(name) = name else { return Ok((None, None)) };
+    if let Some((law, formula)) = own_law::named(own, name) {
+        return Ok((Some(law), Some(formula)));
+    }
     let expected = || format!("one of {}", table::normals().join(", "));
     table::normal_named(name)
-        .map(Some)
+        .map(|law| (Some(law), None))
         .ok_or_else(|| table.error("normal", format!("\"{name}\""), expected()))
 }
 
@@ -193,7 +210,7 @@ fn tangential(c: &Table<PairContact>) -> Result<Option<LawName>, SceneError> {
         .ok_or_else(|| c.error("tangential", format!("\"{name}\""), expected()))
 }
 
-fn pairs(scene: &Table<Scene>) -> Result<Vec<PairOverride>, SceneError> {
+fn pairs(scene: &Table<Scene>, own: Option<&'static Formula>) -> Result<Vec<PairOverride>, SceneError> {
     let mut out = Vec::new();
     for c in scene.rows("contact", &scene.contact) {
         let resist = |k: &str, kind: Option<Resistance>, value: Option<f64>| match (kind, value) {
@@ -204,6 +221,7 @@ fn pairs(scene: &Table<Scene>) -> Result<Vec<PairOverride>, SceneError> {
             (Some(Resistance::None), None) => Ok(Some(0.0)),
             (Some(Resistance::Spring) | None, value) => Ok(value),
         };
+        let (normal, formula) = normal(&c, c.normal.as_deref(), own)?;
         let pair = PairOverride {
             a: find(scene, &c, "between", &c.between[0])?,
             b: find(scene, &c, "between", &c.between[1])?,
@@ -211,7 +229,8 @@ fn pairs(scene: &Table<Scene>) -> Result<Vec<PairOverride>, SceneError> {
             restitution: c.restitution,
             stiffness: c.stiffness.map(|s| s.si),
             adhesion: c.adhesion.map(|w| w.si),
-            normal: normal(&c, c.normal.as_deref())?,
+            normal,
+            formula,
             tangential: tangential(&c)?,
             damping: damping(&c)?,
             rolling_friction: resist("rolling_friction", c.rolling, c.rolling_friction)?,

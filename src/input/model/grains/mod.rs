@@ -13,6 +13,7 @@ mod laws;
 mod materials;
 mod measure;
 mod overlap;
+mod own_law;
 mod part;
 mod periodic;
 mod plates;
