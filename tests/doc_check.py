@@ -119,6 +119,7 @@ def scenes(page):
         "contact_point": grains(spheres + '[[bond]]\nname = "b"\ngap = 1e-4\n' + e("`[[bond]]`", 1)),
         "direct": grains(spheres + '[[bond]]\nname = "b"\ngap = 1e-4\n' + e("`[[bond]]`", 2)),
         "face": grains(group.replace("sphere", "polyhedron") + e("`[[grains]]`", 3) + 'bond = "b"\n[[bond]]\nname = "b"\n' + e("`[[bond]]`", 3)),
+        "contact_law": top + e("`[contact_law]`") + '[[material]]\nname = "glass"\ndensity = 2500\nyoung = "1 GPa"\npoisson = 0.2\nfriction = 0.3\nrestitution = 1\nnormal = "viscoelastic"\n[[grains]]\nname = "pair"\nshape = "sphere"\nmaterial = "glass"\nspheres = [[0, 0, 0, 0.005]]\n' + end,
         "periodic": grains(spheres + e("`[periodic]`") + floor + e("`[wind]`")),
         "water": grains(spheres + floor + e("`[water]`")),
         "lattice": grains(group + e("`[[grains]]`", 1)),
