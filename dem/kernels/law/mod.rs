@@ -13,6 +13,8 @@ mod contact;
 mod contact_law;
 pub mod damping;
 pub mod formula;
+pub mod formula_check;
+mod formula_law;
 pub mod half_step_damping;
 pub mod hertz;
 #[doc(hidden)]

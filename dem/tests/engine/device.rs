@@ -27,6 +27,7 @@ const PAIR: PairOverride = PairOverride {
     stiffness: None,
     adhesion: None,
     normal: None,
+    formula: None,
     tangential: None,
     damping: None,
     rolling_friction: None,

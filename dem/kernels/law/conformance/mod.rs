@@ -6,7 +6,8 @@ mod lanes;
 mod own;
 
 use super::composed::Composed;
-use super::formula::{FormulaLaw, MEMORY, MODULUS, STIFFNESS};
+use super::formula::{MEMORY, MODULUS, STIFFNESS};
+use super::formula_law::FormulaLaw;
 use super::material::{Material, Pair};
 use super::mindlin::Mindlin;
 use super::spring::Spring;

@@ -3,7 +3,9 @@
 use super::{GLASS, History, MASS, Path, SOFT, law};
 use crate::law::composed::Composed;
 use crate::law::contact_law::ContactLaw;
-use crate::law::formula::{Formula, FormulaLaw, MEMORY, MODULUS, STIFFNESS, Texts, verify};
+use crate::law::formula::{Formula, MEMORY, MODULUS, STIFFNESS, Texts};
+use crate::law::formula_check::verify;
+use crate::law::formula_law::FormulaLaw;
 use crate::law::material::{Material, Pair};
 use crate::law::mindlin::Mindlin;
 use crate::law::spring::Spring;

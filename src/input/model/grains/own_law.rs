@@ -3,7 +3,8 @@
 use crate::scene::material::ContactLawTable;
 use crate::scene::{Scene, SceneError, Table};
 use std::collections::BTreeMap;
-use trackbed_dem::law::formula::{Formula, Texts, is_free_name, verify};
+use trackbed_dem::law::formula::{Formula, Texts, is_free_name};
+use trackbed_dem::law::formula_check::verify;
 use trackbed_dem::law::table;
 use trackbed_dem::material::{LawName, Pair};
 use trackbed_dem::{Material, PairOverride};

@@ -1,6 +1,7 @@
 //! Checks of an own law before a run.
 
-use super::{Formula, FormulaLaw, MEMORY, MODULUS, STIFFNESS};
+use super::formula::{Formula, MEMORY, MODULUS, STIFFNESS};
+use super::formula_law::FormulaLaw;
 use crate::base::Vec3;
 use crate::law::composed::Composed;
 use crate::law::material::Pair;
@@ -111,7 +112,7 @@ fn cycle<L: ContactLaw>(law: &L) -> Result<f64, String> {
     let mass = DENSITY * radius * radius * radius;
     let overlap = |k: f64| {
         let part = std::f64::consts::PI * k / STEPS as f64;
-        depth * part.sin() * (1.0 - 0.6 * (3.0 * part).cos()).max(0.0)
+        depth * libm::sin(part) * (1.0 - 0.6 * libm::cos(3.0 * part)).max(0.0)
     };
     let dt = 1.0 / (rate * STEPS as f64);
     let (mut history, mut work, mut spent, mut lost, mut largest) = (History::NONE, 0.0, 0.0, 0.0, 0.0_f64);
