@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, Union
 
 import numpy as np
@@ -121,6 +121,8 @@ def expression(value: dict[str, Any]) -> str:
         return list_of(value)
     if value.get("format") == "path":
         return "File"
+    if kinds == ["object"]:
+        return f"Mapping[str, {expression(value['additionalProperties'])}]"
     return SCALARS[kinds[0]]
 
 

@@ -7,7 +7,7 @@ Add a row: an entry `[[row]]` of inputs/verify/matrix.toml that names its `peers
 `impact` reads scene, overrides and quantity. Other rows need a function in `CASES` of the script.
 
 Add a program: an entry `[[peer]]` and a script that calls `print_values(version, compute)`; `compute(row)` returns the value of
-the row's quantity in its unit. The script gets names of rows; the last line of its standard output is
+the row's quantity in its unit. The script gets the matrix file and names of rows; the last line of its standard output is
 
     {"version": "1.2", "rows": {"NAME": {"value": 0.36, "seconds": 0.1}, "OTHER": {"error": "reason"}}}
 
@@ -17,7 +17,8 @@ or {"missing": "reason"}. `explained` of a row states why an error exceeds the t
 import json, os, re, sys, time, tomllib
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-MATRIX = os.path.join(ROOT, "inputs", "verify", "matrix.toml")
+# First argument; the shipped one for other uses.
+MATRIX = sys.argv[1] if len(sys.argv) > 1 else os.path.join(ROOT, "inputs", "verify", "matrix.toml")
 PREFIX = {"": 1.0, "k": 1e3, "M": 1e6, "G": 1e9, "m": 1e-3, "u": 1e-6, "c": 1e-2}
 
 
@@ -143,7 +144,7 @@ def rows(names):
 def print_values(version, compute):
     """Prints the values of the rows that the command line names."""
     found = {}
-    for row in rows(sys.argv[1:]):
+    for row in rows(sys.argv[2:]):
         start = time.perf_counter()
         try:
             value = compute(row)

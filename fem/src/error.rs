@@ -109,7 +109,7 @@ pub enum SolveError {
     #[error("material {material} is plastic, not supported by the linear solver; use the nonlinear solver")]
     Plastic { material: u32 },
     #[error(
-        "not converged at time {time}: residual {} of the forces after {iterations} iterations; largest at element {element}, integration point {point} (natural coordinates {xi:?}), returned to {region:?}",
+        "not converged at time {time}: residual {} of the forces after {iterations} iterations; largest at element {element}, integration point {point} (natural coordinates {xi:?}), returned to {region}",
         size(*residual)
     )]
     Diverged {

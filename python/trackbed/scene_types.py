@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, Union
 
 import numpy as np
@@ -648,8 +648,8 @@ class ConeRegion(_ConeRegion, total=False):
 class ContactLawTable(TypedDict, total=False):
     """`[contact_law]`: an own normal law by formulas."""
 
-    # Named numbers `[["name", value], …]`; default none.
-    constants: FloatRows
+    # Numbers by name; default none.
+    constants: Mapping[str, Float]
 
     # Dashpot coefficient [N s/m], a formula; default none; not with `D` in `force`.
     damping: str
@@ -1420,7 +1420,7 @@ class Mount(TypedDict, total=False):
 
 
 class Net(TypedDict, total=False):
-    """Rectangular meshes of spheres along ribs. Groups of equal geometry and bond form one net. Sides: `"start"`, `"end"` along; `"left"`, `"right"` across."""
+    """Rectangular meshes of spheres along ribs. Groups of equal meshes, place and bond form one net. Sides: `"start"`, `"end"` along; `"left"`, `"right"` across."""
 
     # Vector of the second side [m]; with meshes across.
     across: Quantities

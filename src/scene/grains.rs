@@ -145,7 +145,7 @@ pub struct LatticeFill {
     pub counts: Option<[usize; 3]>,
 }
 
-/// Rectangular meshes of spheres along ribs. Groups of equal geometry and bond form one net. Sides: `"start"`, `"end"` along; `"left"`, `"right"` across.
+/// Rectangular meshes of spheres along ribs. Groups of equal meshes, place and bond form one net. Sides: `"start"`, `"end"` along; `"left"`, `"right"` across.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Net {

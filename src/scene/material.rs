@@ -4,6 +4,7 @@ use super::bonds::SpreadKind;
 use super::units::{Adhesion, Angle, Density, Quantity, Stiffness, Stress};
 use schemars::JsonSchema;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 
 /// `[[material]]`: contact by a linear spring and dashpot, or after Hertz and Mindlin where materials have a Young's
 /// modulus, unless `normal` names another law; with Coulomb friction.
@@ -112,9 +113,9 @@ pub struct ContactLawTable {
     pub energy: Option<String>,
     /// Energy dissipated in a step [J], a formula; with `D` in `force`.
     pub loss: Option<String>,
-    /// Named numbers `[["name", value], …]`; default none.
+    /// Numbers by name; default none.
     #[serde(default)]
-    pub constants: Vec<(String, f64)>,
+    pub constants: BTreeMap<String, f64>,
 }
 
 /// `contact.damping`.

@@ -60,7 +60,9 @@ pub fn execute(options: &Options) -> Result<Finished, Failure> {
     let _lock = Lock::take(dir)?;
     let mut columns = vec![ours::column(&plan.rows, &dir.join("runs"), options.quiet)?];
     let python = options.python.as_deref();
-    columns.extend(plan.peers.iter().map(|peer| peers::column(peer, &plan.rows, python, dir)));
+    columns.extend(
+        plan.peers.iter().map(|peer| peers::column(peer, (&options.matrix, &plan.rows), python, dir)),
+    );
     let matrix = Matrix { plan, columns };
     write(&dir.join("verify.json"), &format!("{:#}\n", matrix.json()))?;
     write(&dir.join("verify.md"), &text::page(&matrix))?;
@@ -92,6 +94,9 @@ fn failure(matrix: &Matrix) -> Option<Failure> {
     let failed: Vec<&str> = matrix.failed().iter().map(|row| row.table.name.as_str()).collect();
     let (count, all) = (failed.len(), matrix.plan.rows.len());
     (count > 0).then(|| {
-        Failure::Numerical(format!("{count} of {all} rows beyond their tolerance: {}", failed.join(", ")))
+        Failure::Numerical(format!(
+            "{count} of {all} rows beyond their tolerance or failed: {}",
+            failed.join(", ")
+        ))
     })
 }

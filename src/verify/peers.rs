@@ -1,6 +1,6 @@
 //! Columns of other programs, computed by Python scripts.
 //!
-//! `python3 SCRIPT ROW…` prints one JSON object in the last line of its standard output: `version` and `rows`, by name `value`
+//! `python3 SCRIPT MATRIX ROW…` prints one JSON object in the last line of its standard output: `version` and `rows`, by name `value`
 //! (unit of the quantity) and `seconds`, or `error`; or `missing`, a text, if the program is not installed.
 
 use super::cell::{Cell, Column};
@@ -17,13 +17,13 @@ const LONGEST: Duration = Duration::from_secs(900);
 const POLL: Duration = Duration::from_millis(20);
 
 /// Computes the column of a peer, with its output below `dir`; without `python`, no row of it.
-pub fn column(peer: &Peer, rows: &[Row], python: Option<&Path>, dir: &Path) -> Column {
+pub fn column(peer: &Peer, (matrix, rows): (&Path, &[Row]), python: Option<&Path>, dir: &Path) -> Column {
     let name = &peer.table.name;
     let modelled: Vec<&str> =
         rows.iter().filter(|row| row.table.peers.contains(name)).map(|row| row.table.name.as_str()).collect();
     let reply = match python {
         Some(python) if !modelled.is_empty() => {
-            run(peer, python, &modelled, &dir.join(format!("{name}.log")))
+            run(peer, python, (matrix, &modelled), &dir.join(format!("{name}.log")))
         }
         Some(_) => Err("no row".into()),
         None => Err("without --peers".into()),
@@ -55,28 +55,31 @@ fn of(row: &Row, found: &Value) -> Cell {
 }
 
 /// Reply of a script, or why there is none; its output is kept in `log`.
-fn run(peer: &Peer, python: &Path, rows: &[&str], log: &Path) -> Result<Value, String> {
+fn run(peer: &Peer, python: &Path, (matrix, rows): (&Path, &[&str]), log: &Path) -> Result<Value, String> {
     message::say(&format!("{}: {} rows", peer.table.title, rows.len()));
     let failure = |e: std::io::Error| format!("{}: {e}", python.display());
     let mut command = Command::new(python);
-    command.arg(&peer.script).args(rows).stdin(Stdio::null()).stderr(Stdio::null());
+    command.arg(&peer.script).arg(matrix).args(rows).stdin(Stdio::null()).stderr(Stdio::null());
     command.stdout(File::create(log).map_err(failure)?);
     // One thread, as the own column.
     command.envs(["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"].map(|name| (name, "1")));
     let mut child = command.spawn().map_err(failure)?;
     let start = Instant::now();
-    while child.try_wait().map_err(failure)?.is_none() {
+    let status = loop {
+        if let Some(status) = child.try_wait().map_err(failure)? {
+            break status;
+        }
         if start.elapsed() > LONGEST {
             let _ = child.kill();
             let _ = child.wait();
             return Err(format!("no reply within {} s", LONGEST.as_secs()));
         }
         std::thread::sleep(POLL);
-    }
+    };
     let text = String::from_utf8_lossy(&fs::read(log).map_err(failure)?).into_owned();
     let last = text.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("");
     let found: Value = serde_json::from_str(last)
-        .map_err(|_| format!("{}: found no JSON in the last line", peer.table.script.display()))?;
+        .map_err(|_| format!("{}: no reply, {status}", peer.table.script.display()))?;
     match found["missing"].as_str() {
         Some(reason) => Err(reason.into()),
         None => Ok(found),

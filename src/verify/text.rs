@@ -90,6 +90,9 @@ fn differences(matrix: &Matrix) -> Vec<String> {
     let own = matrix.plan.rows.iter().zip(&matrix.columns[0].cells);
     let failed = own.filter_map(|(row, cell)| match cell {
         Cell::Failed { reason } => Some(format!("trackbed: `{}` failed: {reason}", row.table.name)),
+        cell if cell.passed() == Some(false) => {
+            Some(format!("trackbed: `{}` {}", row.table.name, shown(row, cell, "", "")))
+        }
         _ => None,
     });
     let mut lines: Vec<String> = failed.collect();

@@ -101,9 +101,16 @@ fn laws_that_are_wrong_are_refused() {
             "contact_law.force: found for \"stone\" and \"stone\" a force of 1",
         ),
         (LINEAR.replace("\"K*d\"", "\"K*delta\""), "contact_law.force: found the unknown name `delta`"),
-        (LINEAR.replace("c = 2*zeta", "c = -2*zeta"), "a closed cycle that gains"),
+        (
+            LINEAR.replace("c = 2*zeta", "c = -2*zeta"),
+            "contact_law.damping: found for \"stone\" and \"stone\" a closed cycle that gains",
+        ),
+        (
+            LINEAR.to_string() + "constants = { unused = 1.0 }\n",
+            "contact_law.constants.unused: found, but it has no effect",
+        ),
         (LINEAR.replace("name = \"own\"", "name = \"hertz\""), "a name that no shipped law has"),
-        (LINEAR.to_string() + "constants = [[\"K\", 1.0]]\n", "new names of letters, digits and _"),
+        (LINEAR.to_string() + "constants = { K = 1.0 }\n", "new names of letters, digits and _"),
         (LINEAR.to_string() + "loss = \"0\"\n", "contact_law.loss: found a formula"),
     ] {
         let scene = folder.write("scene.toml", &bed(&law)).display().to_string();
@@ -112,5 +119,5 @@ fn laws_that_are_wrong_are_refused() {
     }
     let scene = folder.write("scene.toml", &bed(LINEAR)).display().to_string();
     let Outcome { code, stdout, .. } = trackbed(["check", &scene]);
-    assert!(code == 0 && stdout.contains("contact law \"own\", stone and stone: no force"), "{stdout}");
+    assert!(code == 0 && stdout.contains("contact law \"own\", stone and stone: force, energy"), "{stdout}");
 }

@@ -81,7 +81,12 @@ fn wrong_reference_fails() {
         let file = matrix(&folder, exact, "", "");
         let outcome = verify(&folder, &["--matrix", &file]);
         assert_eq!(outcome.code, code, "{exact}: {}", outcome.stderr);
-        assert_eq!(outcome.stderr.contains("1 of 1 rows beyond their tolerance: bounce"), code == 3);
+        assert_eq!(
+            outcome.stderr.contains("1 of 1 rows beyond their tolerance or failed: bounce"),
+            code == 3
+        );
+        let page = fs::read_to_string(folder.join("out/verify.md")).unwrap();
+        assert_eq!(page.contains("* trackbed: `bounce` "), code == 3, "{page}");
         assert_eq!(json(&folder.join("out/verify.json"))["passed"], code == 0);
     }
 }

@@ -1,6 +1,7 @@
 //! State of the integration points.
 
 use serde::{Deserialize, Serialize};
+use std::fmt;
 use std::ops::{Deref, DerefMut};
 
 /// Stress and history common to all laws.
@@ -149,6 +150,15 @@ pub enum ReturnRegion {
     ConeCap,
     /// Region named by its law.
     Named(&'static str),
+}
+
+impl fmt::Display for ReturnRegion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            ReturnRegion::Named(name) => f.write_str(name),
+            other => write!(f, "{other:?}"),
+        }
+    }
 }
 
 impl ReturnRegion {

@@ -21,7 +21,7 @@ pub const STIFFNESS: u8 = 1;
 /// With memory, by a stiffness.
 pub const MEMORY: u8 = 2;
 
-pub(super) const NAMES: [&str; 3] = ["formula", "formula_stiffness", "formula_memory"];
+pub(super) const NAMES: [&str; 3] = ["contact_law with E", "contact_law with K", "contact_law with D"];
 
 /// Texts of an own law.
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +45,7 @@ pub struct Formula {
     /// Force, and dashpot coefficient or loss.
     pub(super) step: Program,
     pub(super) energy: Option<Program>,
+    pub(super) is_damped: bool,
 }
 
 /// Mistake in one of [`Texts`].
@@ -141,7 +142,8 @@ impl Formula {
             }
             _ => {}
         }
-        Ok(Formula { name: name.to_string(), kind, force, step, energy })
+        let is_damped = texts.damping.is_some();
+        Ok(Formula { name: name.to_string(), kind, force, step, energy, is_damped })
     }
 
     /// Keeps the formula for the life of the process; equal ones once.

@@ -10,6 +10,8 @@ const FUNCTIONS: [(&str, usize); 6] =
 /// Correction of dashpots (`half_step_damping.rs`), where a formula may use `w` and `dt`.
 const HALF_STEP: &str = "half_step";
 
+const MOST_CHARACTERS: usize = 1000;
+
 /// Mistake in a formula.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FormulaError {
@@ -40,6 +42,9 @@ pub enum FormulaError {
     /// Exponent that lanes cannot evaluate.
     #[error("found the exponent {0}, expected a number that is a multiple of 1/4, at most 16")]
     Exponent(String),
+    /// Longer than [`MOST_CHARACTERS`].
+    #[error("found {0} characters, expected at most {MOST_CHARACTERS}")]
+    Characters(usize),
     /// Too many operations.
     #[error("{0}, expected a shorter formula")]
     Long(#[from] TooLong),
@@ -55,6 +60,9 @@ pub fn parse(
     constants: &BTreeMap<String, f64>,
     variables: &[Variable],
 ) -> Result<(), FormulaError> {
+    if text.len() > MOST_CHARACTERS {
+        return Err(FormulaError::Characters(text.len()));
+    }
     let text = text.char_indices().collect();
     let (defined, unused) = (BTreeMap::new(), BTreeSet::new());
     let mut parser = Parser { text, at: 0, program, constants, variables, defined, unused };
@@ -167,12 +175,12 @@ impl Parser<'_> {
         }
         let quarters = quarters as u32;
         let mut factors = vec![base; (quarters / 4) as usize];
-        if quarters % 4 > 0 {
+        if !quarters.is_multiple_of(4) {
             let half = self.put(Operation::Sqrt(base))?;
             if quarters % 4 >= 2 {
                 factors.push(half);
             }
-            if quarters % 2 == 1 {
+            if !quarters.is_multiple_of(2) {
                 factors.push(self.put(Operation::Sqrt(half))?);
             }
         }

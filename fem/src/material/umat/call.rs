@@ -85,7 +85,8 @@ impl Routine {
         let mut constants = input.constants.to_vec();
         let (mut name, mut pnewdt) = (*input.name, 1.0);
         let UpdateContext { time, mut time_step, element, point } = input.context;
-        let mut times = [time, time];
+        // Equilibrium before the start has negative times.
+        let mut times = [time.max(0.0); 2];
         let [mut rpl, mut drpldt, mut temperature, mut change, mut length] = [0.0, 0.0, 0.0, 0.0, 1.0];
         let [mut by_temperature, mut heat] = [[0.0; 6]; 2];
         let [mut fields, mut field_changes] = [[0.0; 1]; 2];

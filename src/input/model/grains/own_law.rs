@@ -2,7 +2,6 @@
 
 use crate::scene::material::ContactLawTable;
 use crate::scene::{Scene, SceneError, Table};
-use std::collections::BTreeMap;
 use trackbed_dem::law::formula::{Formula, Texts, is_free_name};
 use trackbed_dem::law::formula_check::verify;
 use trackbed_dem::law::table;
@@ -14,15 +13,18 @@ pub(super) fn own_law(scene: &Table<Scene>) -> Result<Option<&'static Formula>, 
     if table::normal_named(&law.name).is_some() {
         return Err(law.error("name", format!("\"{}\"", law.name), "a name that no shipped law has"));
     }
-    let constants = constants(&law)?;
+    if law.name.trim().is_empty() {
+        return Err(law.error("name", "\"\"", "a name"));
+    }
+    check_constants(&law)?;
     let texts = Texts {
         force: &law.force,
         damping: law.damping.as_deref(),
         energy: law.energy.as_deref(),
         loss: law.loss.as_deref(),
     };
-    let formula =
-        Formula::parse(&law.name, &texts, &constants).map_err(|e| mistake(&law, e.key, &e.to_string()))?;
+    let formula = Formula::parse(&law.name, &texts, &law.constants)
+        .map_err(|e| mistake(&law, e.key, &e.to_string()))?;
     let named = |normal: &Option<String>| normal.as_ref() == Some(&law.name);
     if !(scene.material.iter().any(|m| named(&m.normal)) || scene.contact.iter().any(|c| named(&c.normal))) {
         let expected = format!("`normal = \"{}\"` of a [[material]] or [[contact]]", law.name);
@@ -37,15 +39,22 @@ fn mistake(law: &Table<ContactLawTable>, key: &str, problem: &str) -> SceneError
     law.error(key, found.strip_prefix("found ").unwrap_or(found), expected)
 }
 
-fn constants(law: &Table<ContactLawTable>) -> Result<BTreeMap<String, f64>, SceneError> {
-    let mut constants = BTreeMap::new();
+fn check_constants(law: &Table<ContactLawTable>) -> Result<(), SceneError> {
+    let texts = [Some(&law.force), law.damping.as_ref(), law.energy.as_ref(), law.loss.as_ref()];
+    let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let words: Vec<&str> =
+        texts.into_iter().flatten().flat_map(|t| t.split(move |c| !is_letter(c))).collect();
     for (name, value) in &law.constants {
-        if !is_free_name(name) || constants.insert(name.clone(), *value).is_some() {
+        let key = format!("constants.{name}");
+        if !is_free_name(name) {
             return Err(law.error("constants", format!("\"{name}\""), "new names of letters, digits and _"));
         }
-        law.check("constants", *value, f64::is_finite, "finite numbers")?;
+        law.check(&key, *value, f64::is_finite, "a finite number")?;
+        if !words.contains(&name.as_str()) {
+            return Err(law.no_effect(&key, "its name in a formula"));
+        }
     }
-    Ok(constants)
+    Ok(())
 }
 
 /// Law of a name, if it is the own one.
@@ -71,10 +80,14 @@ pub(super) fn checked(
                 continue;
             }
             let names = [i, j].map(|k| scene.material[k].name.as_str());
-            let verdict = verify(formula, &pair).map_err(|problem| {
-                let found = format!("for \"{}\" and \"{}\" {problem}", names[0], names[1]);
-                let expected = "a force that grows from zero with the overlap, and no gain of energy";
-                law.error("force", found, expected)
+            let verdict = verify(formula, &pair).map_err(|fault| {
+                let found = format!("for \"{}\" and \"{}\" {}", names[0], names[1], fault.problem);
+                let expected = match fault.key {
+                    "force" => "a force that grows from zero with the overlap",
+                    "energy" => "the work of first loading",
+                    _ => "dissipation, as stated",
+                };
+                law.error(fault.key, found, expected)
             })?;
             lines.push(format!(
                 "contact law \"{}\", {} and {}: {verdict}",

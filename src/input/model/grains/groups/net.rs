@@ -40,6 +40,14 @@ pub(super) fn net(
             bonds.join_net(pair, kind, this.geometry.steps[axis].norm());
         }
     }
+    let alike = |n: &&NetGroup| n.kind.is_some() && n.kind == this.kind;
+    let mut others = part.nets.iter().filter(alike).peekable();
+    if others.peek().is_some() && !others.any(|n| n.geometry.matches(&this.geometry)) {
+        part.remarks.push(format!(
+            "grains \"{}\": its net has another place, size or mesh than the other nets of its bond and is not joined to them",
+            group.name
+        ));
+    }
     part.nets.push(this);
     Ok(())
 }

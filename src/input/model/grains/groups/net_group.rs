@@ -29,7 +29,7 @@ pub(super) struct Geometry {
 
 /// Pairs of neighbours along ribs, in `this` or between it and the `others` of its net, with the axis of the rib.
 pub(super) fn joined(this: &NetGroup, others: &[NetGroup]) -> Vec<([usize; 2], usize)> {
-    let same = |n: &&NetGroup| n.kind == this.kind && n.geometry == this.geometry;
+    let same = |n: &&NetGroup| n.kind == this.kind && n.geometry.matches(&this.geometry);
     let mut all: BTreeMap<Place, usize> =
         others.iter().filter(same).flat_map(|n| &n.bodies).map(|(p, b)| (*p, *b)).collect();
     all.extend(&this.bodies);
@@ -50,7 +50,17 @@ pub(super) fn joined(this: &NetGroup, others: &[NetGroup]) -> Vec<([usize; 2], u
     pairs
 }
 
+/// Difference of places that counts as rounding, over the distance of spheres.
+const ROUNDING: f64 = 1e-3;
+
 impl Geometry {
+    /// Whether the spheres have the same places.
+    pub fn matches(&self, other: &Geometry) -> bool {
+        let corners = [[0, 0], [self.last[0], 0], [0, self.last[1]]];
+        let near = |p: Place| (self.position(p) - other.position(p)).norm() < ROUNDING * self.steps[0].norm();
+        self.last == other.last && self.each == other.each && corners.into_iter().all(near)
+    }
+
     pub fn position(&self, [i, j]: Place) -> Vec3 {
         self.corner + self.steps[0] * i as f64 + self.steps[1] * j as f64
     }
