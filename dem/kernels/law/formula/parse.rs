@@ -42,7 +42,7 @@ pub enum FormulaError {
     /// Exponent that lanes cannot evaluate.
     #[error("found the exponent {0}, expected a number that is a multiple of 1/4, at most 16")]
     Exponent(String),
-    /// Longer than [`MOST_CHARACTERS`].
+    /// More than 1,000 characters.
     #[error("found {0} characters, expected at most {MOST_CHARACTERS}")]
     Characters(usize),
     /// Too many operations.
