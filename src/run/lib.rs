@@ -317,6 +317,9 @@ fn describe(run: &Run<'_>, summary: &mut Summary) -> Result<(), Failure> {
         summary.solid.libraries = LibraryRecord::of(solid);
     }
     if let Some(part) = &run.job.grains {
+        if run.verbosity > Verbosity::Quiet {
+            part.materials.law_lines.iter().for_each(|line| message::note(line));
+        }
         summary.warnings.extend(part.groups.remarks.iter().cloned());
         summary.sources.extend(part.materials.sources());
         summary.sources.extend(part.body_forces().map(|f| f.source()));

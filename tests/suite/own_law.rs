@@ -120,4 +120,7 @@ fn laws_that_are_wrong_are_refused() {
     let scene = folder.write("scene.toml", &bed(LINEAR)).display().to_string();
     let Outcome { code, stdout, .. } = trackbed(["check", &scene]);
     assert!(code == 0 && stdout.contains("contact law \"own\", stone and stone: force, energy"), "{stdout}");
+    let out = folder.join("out").display().to_string();
+    let Outcome { code, stderr, .. } = trackbed(["run", &scene, "--out", &out, "--set", "time.end=0.01"]);
+    assert!(code == 0 && stderr.contains("contact law \"own\", stone and stone"), "{code}: {stderr}");
 }
