@@ -148,23 +148,29 @@ def column(lengths, modulus, density, direction):
     return number
 
 
+def history(row, times, pulse, act, watched):
+    """Value of a row from the displacement of the `watched` (node, direction) of a column; `act(i, j)` at four nodes follows `pulse`."""
+    step = times[1]
+    ops.timeSeries("Path", 1, "-dt", step, "-values", *pulse)
+    ops.pattern("Plain", 1, 1)
+    for i in (0, 1):
+        for j in (0, 1):
+            act(i, j)
+    solver("transient")
+    found = [0.0]
+    for _ in times[1:]:
+        assert ops.analyze(1, step) == 0
+        found.append(ops.nodeDisp(*watched))
+    return common.taken(row, {"time": times, row["quantity"]["column"]: found})
+
+
 def shear_column(row):
     """40 bricks of 8 nodes; the base follows the pulse of the scene."""
     n, step = 40, 5e-4
     number = column(grid([-10.0, 0.0], [n]), (50e6, 0.25), 2000.0, 0)
     times = [k * step for k in range(round(0.6 / step) + 1)]
     pulse = [0.01 * math.sin(math.pi * t / 0.1) ** 4 if t < 0.1 else 0.0 for t in times]
-    ops.timeSeries("Path", 1, "-dt", step, "-values", *pulse)
-    ops.pattern("Plain", 1, 1)
-    for i in (0, 1):
-        for j in (0, 1):
-            ops.sp(number(i, j, 0), 1, 1.0)
-    solver("transient")
-    found = [0.0]
-    for _ in times[1:]:
-        assert ops.analyze(1, step) == 0
-        found.append(ops.nodeDisp(number(0, 0, n), 1))
-    return common.taken(row, {"time": times, row["quantity"]["column"]: found})
+    return history(row, times, pulse, lambda i, j: ops.sp(number(i, j, 0), 1, 1.0), (number(0, 0, n), 1))
 
 
 def wave_column(row):
@@ -179,17 +185,7 @@ def wave_column(row):
         ops.element("zeroLength", 10000 + c, 10000 + c, number(i, j, 0), "-mat", 2, "-dir", 3)
     times = [k * step for k in range(round(0.3 / step) + 1)]
     pulse = [math.sin(math.pi * 40 * t) ** 2 if t < 1 / 40 else 0.0 for t in times]
-    ops.timeSeries("Path", 1, "-dt", step, "-values", *pulse)
-    ops.pattern("Plain", 1, 1)
-    for i in (0, 1):
-        for j in (0, 1):
-            ops.load(number(i, j, n), 0.0, 0.0, -10e3 / 4)
-    solver("transient")
-    found = [0.0]
-    for _ in times[1:]:
-        assert ops.analyze(1, step) == 0
-        found.append(ops.nodeDisp(number(0, 0, n), 3))
-    return common.taken(row, {"time": times, row["quantity"]["column"]: found})
+    return history(row, times, pulse, lambda i, j: ops.load(number(i, j, n), 0.0, 0.0, -10e3 / 4), (number(0, 0, n), 3))
 
 
 def triaxial(row):

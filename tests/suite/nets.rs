@@ -80,11 +80,14 @@ fn groups_of_other_geometry_are_not_joined() {
     let made = |name: &str, set: &[&str]| {
         let out = folder.join(name);
         run(&scene, &out, &[&["gravity=[0, 0, 0]"], set].concat()).good();
-        json(&out.join("summary.json"))["bonds"]["made"].as_u64().unwrap()
+        let summary = json(&out.join("summary.json"));
+        let warned = summary["warnings"].to_string().contains("is not joined to them");
+        (summary["bonds"]["made"].as_u64().unwrap(), warned)
     };
     // 5 × 3 ribs along, 6 × 2 across.
-    assert_eq!(made("one", &[]), 27);
-    assert_eq!(made("moved", &["grains.2.net.corner=[0.3, 0, 0]"]), 27 - 3);
+    assert_eq!(made("one", &[]), (27, false));
+    assert_eq!(made("rounded", &["grains.2.net.corner=[1e-9, 0, 0]"]), (27, false));
+    assert_eq!(made("moved", &["grains.2.net.corner=[0.3, 0, 0]"]), (27 - 3, true));
 }
 
 #[test]

@@ -155,6 +155,10 @@ fn arguments_are_those_of_the_increment() {
     assert_eq!(material.law.stored_energy(&SOIL, walk.point()), 4.0);
     let start = Walk::new(&material, [0.0; 6]);
     assert_eq!(material.law.dissipation(start.point(), walk.point()), Some(14.0));
+    // Equilibrium before the start.
+    walk.context.time = -0.75;
+    walk.step(&[0.0; 6]).unwrap();
+    assert_eq!(walk.values[..3], [0.0, 0.0, 0.125]);
 }
 
 #[test]

@@ -335,6 +335,8 @@ mod tests {
         let mut values = [0.0; VARIABLES.len()];
         values[Variable::Overlap as usize] = 4.0;
         values[Variable::Radius as usize] = 9.0;
+        values[Variable::InverseMass as usize] = 2.0;
+        values[Variable::Step as usize] = 0.5;
         Ok(program.evaluate::<f64, 1>(&values)[0])
     }
 
@@ -354,6 +356,8 @@ mod tests {
             ("a = d + 1; b = a * a; b - a", 20.0),
             ("1e2 + 1.5e-1 + 2E+1", 120.15),
             ("k*d", 12.0),
+            // x = 0.5 · 0.5 · 4 · 2 = 2.
+            ("half_step(d)", 4.0 * (4.0 + 2.0) / (4.0 + 3.0 * 2.0)),
         ] {
             assert_eq!(value(text), Ok(expected), "{text}");
         }
