@@ -75,6 +75,8 @@ pub enum Command {
     },
     /// Run variants of a scene: sensitivity to parameters, calibration, errors and costs.
     Study(StudyArgs),
+    /// Run traffic and tampings over the life of a track, with several packings.
+    Life(LifeArgs),
     /// Test soil models at one stress point: triaxial, undrained, oedometer, simple shear, any path.
     Element(ElementArgs),
     /// Write an HTML report of one run or study, or a comparison of several runs.
@@ -185,8 +187,11 @@ impl RunArgs {
 /// Arguments of `reproduce`.
 #[derive(Debug, Args)]
 pub struct ReproduceArgs {
-    /// Results directory of a finished run, whose scene and other input files are as they were.
+    /// Results directory of a finished run with unchanged input files, or its archive (.tar.gz).
     pub results: PathBuf,
+    /// Run nothing: write results and input files to an archive (.tar.gz).
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["out", "threads"])]
+    pub archive: Option<PathBuf>,
     /// Results directory of the new run [default: RESULTS-reproduced].
     #[arg(long)]
     pub out: Option<PathBuf>,
@@ -216,6 +221,28 @@ pub struct VerifyArgs {
     /// Renew the tables and the plot of this page of the guide; needs --peers.
     #[arg(long, value_name = "PAGE", requires = "peers", conflicts_with = "only")]
     pub page: Option<PathBuf>,
+    /// Print errors only.
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Arguments of `life`.
+#[derive(Debug, Args)]
+pub struct LifeArgs {
+    /// Life file (TOML): scene, packings, traffic, tampings.
+    pub life: PathBuf,
+    /// Results directory [default: results/NAME of the file].
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Threads of each run [default: cores divided by packings].
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// Keep finished runs and resume interrupted ones.
+    #[arg(long, conflicts_with = "force")]
+    pub resume: bool,
+    /// Overwrite existing runs.
+    #[arg(long)]
+    pub force: bool,
     /// Print errors only.
     #[arg(long)]
     pub quiet: bool,

@@ -1,10 +1,12 @@
 //! Commands.
 
+mod archive;
 pub mod check;
 mod convert;
 mod demo;
 mod element;
 pub mod explain;
+mod life;
 mod manual;
 mod mesh;
 mod modal;
@@ -60,6 +62,7 @@ pub fn execute(command: Command) -> Result<(), Failure> {
         Command::Report(args) => report::report(args),
         Command::Reproduce(args) => reproduce::reproduce(args, run_scene),
         Command::Verify(args) => verify::verify(args),
+        Command::Life(args) => life::life(args),
         Command::Modal(args) => {
             note_earlier_names(&args.scene, &args.set);
             print(&modal::modal(&args)?)

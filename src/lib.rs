@@ -10,6 +10,7 @@ pub mod allocator;
 pub mod cli;
 pub mod commands;
 pub mod element;
+pub mod life;
 pub mod program;
 pub mod start;
 pub mod study;

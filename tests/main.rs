@@ -1,6 +1,7 @@
 //! System tests: run the binary on scene files, check output and result files.
 
 mod suite {
+    mod archive;
     mod bad_input;
     mod balance;
     mod ballast;
@@ -28,6 +29,7 @@ mod suite {
     mod grain_limits;
     mod hostile;
     mod include;
+    mod life;
     mod mesh_forms;
     mod mesh_forms_files;
     mod mesh_orders;
@@ -66,6 +68,7 @@ mod suite {
     mod study;
     mod summary;
     pub mod support;
+    mod tamping;
     mod tecplot_zone;
     mod track;
     mod trade;

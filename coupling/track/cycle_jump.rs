@@ -8,8 +8,10 @@
 //! * `displace`: bodies are displaced along their drift, limited by the change of overlaps; recovery cycles
 //!   do not count. Errors after each stretch are summed.
 //!
-//! Not supported: collapsing beds, changing loads. Theory manual: eqs. (6.24), (6.25), (6.26), (6.27).
+//! Jumps wait after steps of the settlement, changes of the resilient deflection and broken bonds, and are shorter
+//! where the slope changes (`change`). Not supported: changing loads. Theory manual: eqs. (6.24), (6.25), (6.26), (6.27).
 
+use super::change::{self, Change};
 use super::cycles::CycleRecorder;
 use super::settlement;
 use super::system::TrackSystem;
@@ -46,6 +48,28 @@ pub struct CycleJumpOptions {
     pub overlap: f64,
 }
 
+impl CycleJumpOptions {
+    /// Simulated of `total` cycles, if all errors are within the tolerance and no jump is limited.
+    pub fn fewest_simulated(&self, total: u32) -> u32 {
+        let (mut number, mut simulated, mut growth) = (self.first, self.first, START * self.largest);
+        while number < total {
+            let stretch = self.stretch(simulated);
+            let room = (total - number).saturating_sub(self.settle + stretch);
+            number += ((growth * f64::from(number)) as u32).min(room);
+            let left = (self.settle + stretch).min(total - number);
+            (number, simulated) = (number + left, simulated + left);
+            growth = (2.0 * growth).min(self.largest);
+        }
+        simulated
+    }
+
+    /// Measured cycles after `simulated`.
+    fn stretch(&self, simulated: u32) -> u32 {
+        let share = if self.grains { 0.0 } else { STRETCH * f64::from(simulated) };
+        self.measure.max(share as u32)
+    }
+}
+
 /// One jump.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JumpRecord {
@@ -61,6 +85,15 @@ pub struct JumpRecord {
     pub error: f64,
     /// Mean relative change of overlaps; `displace` only.
     pub overlap_change: Option<f64>,
+}
+
+/// Jump that waits, because the cycles before it follow no single law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DelayRecord {
+    /// Last cycle before it.
+    pub cycle: u32,
+    /// Reason.
+    pub reason: String,
 }
 
 /// Results of a run with jumps.
@@ -80,6 +113,9 @@ pub struct JumpSummary {
     pub energy: f64,
     /// Jumps.
     pub jumps: Vec<JumpRecord>,
+    /// Jumps that a change delayed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub delays: Vec<DelayRecord>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -108,6 +144,11 @@ pub struct CycleJumper {
     predicted: Option<[f64; 3]>,
     /// Jumps so far.
     pub jumps: Vec<JumpRecord>,
+    /// Delays so far.
+    delays: Vec<DelayRecord>,
+    /// Broken bonds and bodies at the start of the stretch.
+    broken: usize,
+    bodies: usize,
 }
 
 impl CycleJumper {
@@ -120,6 +161,9 @@ impl CycleJumper {
             stretch_start: [0.0; 2],
             predicted: None,
             jumps: Vec::new(),
+            delays: Vec::new(),
+            broken: 0,
+            bodies: 0,
         }
     }
 
@@ -160,13 +204,17 @@ impl CycleJumper {
     fn begin<S: TrackSystem>(&mut self, plan: &CycleJumpOptions, cycles: &mut CycleRecorder, system: &S) {
         if let (true, Some(g)) = (plan.grains, system.grains()) {
             self.places = (0..g.model.body_count())
-                .map(|b| (g.state.position(b), g.state.orientation(g.model, b)))
+                .map(|b| match g.state.present(b) {
+                    true => (g.state.position(b), g.state.orientation(g.model, b)),
+                    false => (dem::Vec3::zeros(), UnitQuaternion::identity()),
+                })
                 .collect();
         }
         self.stretch_start = cycles.latest;
+        self.broken = broken_bonds(system);
+        self.bodies = bodies(system);
         cycles.counting = true;
-        let share = if plan.grains { 0.0 } else { STRETCH * f64::from(cycles.simulated()) };
-        let left = plan.measure.max(share as u32);
+        let left = plan.stretch(cycles.simulated());
         let room = cycles.total() - cycles.number();
         self.phase = if room < left { Phase::Over } else { Phase::Stretch(left) };
     }
@@ -203,7 +251,26 @@ impl CycleJumper {
         };
         let reserve = plan.settle + plan.measure.max((STRETCH * f64::from(cycles.simulated())) as u32);
         let room = (cycles.total() - cycles.number()).saturating_sub(reserve);
-        let mut skipped = ((self.growth * number) as u32).min(room);
+        if room == 0 {
+            return false;
+        }
+        // The error of the last displacement is no change.
+        let jumped = self.jumps.last().filter(|_| plan.grains).map_or(0, |j| j.from + j.cycles);
+        let begun = f64::from(jumped).max(WINDOW * age);
+        let broken = broken_bonds(system) > self.broken;
+        let event = match bodies(system) == self.bodies {
+            true => broken.then_some("bonds broke"),
+            false => Some("grains left"),
+        };
+        let growth = match change::of(cycles, begun, plan.tolerance * settlement.abs(), event) {
+            None => self.growth,
+            Some(Change::Turn(span)) => self.growth.min(libm::expm1(span)),
+            Some(Change::Break(reason)) => {
+                self.delays.push(DelayRecord { cycle: cycles.number(), reason: reason.into() });
+                return false;
+            }
+        };
+        let mut skipped = ((growth * number) as u32).min(room);
         let mut change = None;
         let mut moves = Vec::new();
         if plan.grains {
@@ -271,8 +338,17 @@ impl CycleJumper {
             },
             energy,
             jumps: self.jumps.clone(),
+            delays: self.delays.clone(),
         }
     }
+}
+
+fn bodies<S: TrackSystem>(system: &S) -> usize {
+    system.grains().map_or(0, |g| g.state.present_count())
+}
+
+fn broken_bonds<S: TrackSystem>(system: &S) -> usize {
+    system.grains().map_or(0, |g| g.state.breaks().len())
 }
 
 /// Body motion through a stretch.
@@ -290,6 +366,10 @@ impl Drift {
             .iter()
             .enumerate()
             .map(|(b, (x, q))| {
+                // Bodies that left do not move.
+                if !g.state.present(b) {
+                    return Default::default();
+                }
                 let turn = g.state.orientation(g.model, b) * q.inverse();
                 (g.state.position(b) - x, rotation::vector(&turn))
             })
@@ -326,7 +406,8 @@ impl Drift {
         let on = |(b, (shift, turn)): (usize, &(dem::Vec3, dem::Vec3))| {
             (b, shift * factor, rotation::by(&(turn * factor)))
         };
-        self.motion.iter().enumerate().map(on).collect()
+        let moving = self.motion.iter().enumerate().filter(|(_, motion)| **motion != Default::default());
+        moving.map(on).collect()
     }
 }
 

@@ -67,7 +67,8 @@ fn jumps_of(plan: &CycleJumpOptions, cycles: u32, law: impl Fn(f64) -> f64) -> (
     let mut jumps = Vec::new();
     recorder.record(0.0, 1.0, 0.0, 0.0, 0.0, 0.0);
     for k in 1..=cycles {
-        let now = law(f64::from(recorder.number() + 1));
+        // Without displacement the bed is as old as its simulated cycles.
+        let now = law(f64::from(if plan.grains { recorder.number() + 1 } else { k }));
         let down = (Vec3::new(0.0, 0.0, settled - now), UnitQuaternion::identity());
         system.relocate(&[(0, down.0, down.1), (1, down.0, down.1)]);
         settled = now;
@@ -123,4 +124,33 @@ fn overlap_change_limits_jumps() {
     assert!((reported / change - 1.0).abs() < 1e-3, "{reported} {change}");
     assert!(reported <= 1e-4 && reported > 0.8e-4, "{reported}");
     assert!(skipped < (2.5 * number).floor() && skipped > 1.0, "{jumps:?}");
+}
+
+const EXTRAPOLATED: CycleJumpOptions =
+    CycleJumpOptions { grains: false, first: 40, measure: 6, settle: 0, tolerance: 0.02, ..PLAN };
+
+#[test]
+fn cycles_of_one_law_cost_the_fewest() {
+    let plan = EXTRAPOLATED;
+    let fewest = plan.fewest_simulated(10_000);
+    let (jumper, _) = jumps_of(&plan, fewest, |n| 1e-6 * n.ln());
+    let skipped: u32 = jumper.jumps.iter().map(|j| j.cycles).sum();
+    assert_eq!(fewest + skipped, 10_000, "{:?}", jumper.jumps);
+    assert!(jumper.delays.is_empty() && fewest < 200, "{fewest}");
+    assert_eq!(CycleJumpOptions { first: 10_000, ..plan }.fewest_simulated(10_000), 10_000);
+}
+
+/// A rearrangement before the first jump: it waits until the settlement of the last cycles follows one law again.
+#[test]
+fn jumps_wait_after_a_step() {
+    let b = 1e-6;
+    let step = |n: f64| b * n.ln() + if n > 30.0 { b } else { 0.0 };
+    let (jumper, _) = jumps_of(&EXTRAPOLATED, 130, step);
+    let first = jumper.delays.first().expect("a delay");
+    assert_eq!((first.cycle, first.reason.as_str()), (40, "settlement stepped"));
+    // A quarter of the age lies behind the step, and enough cycles before it to see it.
+    let begun = jumper.jumps.first().expect("a jump").from;
+    assert!((60..=130).contains(&begun), "{begun} {:?}", jumper.delays);
+    let (steady, _) = jumps_of(&EXTRAPOLATED, 60, |n| b * n.ln());
+    assert!(steady.delays.is_empty() && steady.jumps[0].from == 40, "{:?}", steady.jumps);
 }

@@ -4,6 +4,7 @@
 
 pub mod band;
 pub mod beam;
+mod change;
 pub mod cycle_jump;
 pub mod cycles;
 pub mod extremes;

@@ -1,9 +1,9 @@
 //! Settlement laws fitted to the settlement per load cycle, by least squares. Theory manual: eqs. (6.17) to
-//! (6.23).
+//! (6.23), (6.40), (6.41).
 //!
 //! Alva-Hurtado & Selig, 10th ICSMFE, Stockholm 1981; ORE D71, 1970; Hettler 1984; Selig & Waters 1994;
-//! Indraratna et al. 1997–2010; Shenton 1985; Sato 1995; after the review of Dahlberg, Proc. IMechE F 215,
-//! 2001.
+//! Indraratna et al. 1997–2010; Shenton 1985; Sato 1995; Guérin 1996; Thom & Oakley, Proc. ICE Transport 159,
+//! 2006; after the review of Dahlberg, Proc. IMechE F 215, 2001.
 //!
 //! Standard errors of parameters allow for the correlation of neighbouring residuals, ρ between successive
 //! cycles: factor √((1 + ρ)/(1 − ρ)) (G. V. Bayley and J. M. Hammersley, Suppl. J. R. Stat. Soc. 8, 1946).
@@ -16,6 +16,8 @@ pub const FIRST: f64 = 10.0;
 pub const FEWEST: usize = 10;
 /// First cycle of short runs.
 pub const EARLY: f64 = 2.0;
+/// Decimal logarithm of the first cycle of laws for the time after bedding (Thom & Oakley).
+const BEDDED: f64 = 2.4;
 /// Points beyond the number of parameters.
 const SPARE: usize = 2;
 
@@ -56,6 +58,8 @@ pub fn settlement_after(law: &str, parameters: &[f64], n: f64) -> Option<f64> {
         ("Indraratna", [s1, a, b]) => s1 * (1.0 + a * log + 0.5 * b * log * log),
         ("power", [a, b]) => a * libm::pow(n, *b),
         ("Shenton", [a, b]) => a * libm::pow(n, 0.2) + b * n,
+        ("Guérin, Dahlberg", [a, b]) => a + b * n,
+        ("Thom & Oakley", [s0, c]) => s0 + c * (log - BEDDED).powi(2),
         ("Sato", [gamma, alpha, beta]) => -gamma * libm::expm1(-alpha * n) + beta * n,
         _ => return None,
     };
@@ -105,6 +109,19 @@ pub fn fits(cycles: &[[f64; 2]], load: f64) -> Vec<Fit> {
     if let Some((ln, c, rest)) = search(range[0], range[1], sato) {
         let parameters = vec![("gamma", c[0]), ("alpha", libm::exp(ln)), ("beta", c[1])];
         out.push(data.fit("Sato", "gamma (1 - exp(-alpha N)) + beta N", parameters, rest));
+    }
+    let bedded = from(libm::pow(10.0, BEDDED));
+    let mean = bedded.iter().map(|c| c[1]).sum::<f64>() / bedded.len().max(1) as f64;
+    let spread = bedded.iter().map(|c| (c[1] - mean).powi(2)).sum::<f64>();
+    let data = Data { used: &bedded, spread };
+    // Rates that depend on load and deflection only.
+    if let Some((c, rest)) = data.linear(&[one, &|n| n]).filter(|_| bedded.len() >= FEWEST) {
+        out.push(data.fit("Guérin, Dahlberg", "a + b N", vec![("a", c[0]), ("b", c[1])], rest));
+    }
+    let square: Term = &|n| (libm::log10(n) - BEDDED).powi(2);
+    if let Some((c, rest)) = data.linear(&[one, square]).filter(|_| bedded.len() >= FEWEST) {
+        let form = "s0 + c (log10 N - 2.4)^2";
+        out.push(data.fit("Thom & Oakley", form, vec![("s0", c[0]), ("c", c[1])], rest));
     }
     out.retain(|f| f.points >= f.parameters.len() + SPARE && f.parameters.iter().all(|p| p.1.is_finite()));
     out

@@ -53,6 +53,23 @@ fn parameters_of_curves_are_recovered() {
     near(&fit, "a", 0.002, 0.01);
     near(&fit, "b", 4e-6, 0.03);
 
+    let fit = fitted(&noisy(|n| 0.004 + 3e-6 * n), "Guérin, Dahlberg");
+    near(&fit, "a", 0.004, 0.02);
+    near(&fit, "b", 3e-6, 0.1);
+    assert_eq!(fit.range, [252.0, 400.0]);
+
+    let late: Vec<[f64; 2]> =
+        (1..=60).map(|k| f64::from(k * 500)).map(|n| [n, 0.004 + 1e-3 * (n.log10() - 2.4).powi(2)]).collect();
+    let fit = fitted(&late, "Thom & Oakley");
+    near(&fit, "s0", 0.004, 1e-9);
+    near(&fit, "c", 1e-3, 1e-9);
+    assert_eq!(fit.range, [500.0, 30000.0]);
+    assert!(
+        fits(&noisy(|n| 0.004 * n.powf(0.17))[..240], 40e3)
+            .iter()
+            .all(|f| f.range[1] < 252.0 && f.law != "Thom & Oakley" && f.law != "Guérin, Dahlberg")
+    );
+
     let fit = fitted(&noisy(|n| 0.003 * (1.0 + 0.2 * n.log10())), "ORE D71");
     near(&fit, "s1", 0.003, 0.002);
 

@@ -51,7 +51,9 @@ Chains = Literal["all", "strong"]
 # "squeeze": Plane moving in.
 # "bedding": Sleepers placed and pressed.
 # "pouring": Grains dropped around sleepers.
-CompactionKind = Literal["vibration", "tamping", "squeeze", "bedding", "pouring"]
+# "tines": Sleepers lifted and tamped by vibrating tines, one after the other.
+# "stabilizing": Sleepers loaded and shaken across the track, held or not.
+CompactionKind = Literal["vibration", "tamping", "squeeze", "bedding", "pouring", "tines", "stabilizing"]
 
 
 # Meridian of Mohr–Coulomb that the cone of Drucker–Prager passes through.
@@ -573,16 +575,17 @@ class Compaction(TypedDict, total=False):
     # Successive plate positions `[[x, y], …]` [m]; with `"tamping"`.
     at: Rows
 
-    # Cycles, at each position; ≥ 1; with `"vibration"`, `"tamping"`, `"bedding"`.
+    # Cycles, at each position; ≥ 1; with `"vibration"`, `"tamping"`, `"bedding"`, `"stabilizing"`.
     cycles: Integer
 
     # Direction of motion; default up; with `"vibration"`.
     direction: Floats
 
-    # Force F sin² πft, besides weight [N]; > 0; with `"tamping"` (plate), `"bedding"` (each rigid sleeper).
+    # Force F sin² πft, besides weight [N]; > 0; with `"tamping"` (plate), `"bedding"` (each rigid sleeper); constant with
+    # `"stabilizing"`.
     force: Quantity
 
-    # Frequency f [Hz]; > 0; with `"vibration"`, `"tamping"`, `"bedding"`.
+    # Frequency f [Hz]; > 0; with `"vibration"`, `"tamping"`, `"bedding"`, `"tines"`, `"stabilizing"`.
     frequency: Quantity
 
     # Friction between grains; default unchanged; ≥ 0.
@@ -623,6 +626,12 @@ class Compaction(TypedDict, total=False):
 
     # Factor on contact stiffness, not corner strength; default 1; > 0, ≤ 1.
     stiffness_factor: Float
+
+    # Force F sin 2πft on each rigid sleeper across the track [N]; > 0; with `"stabilizing"`.
+    sway: Quantity
+
+    # Tines of a tamping machine; with `"tines"`.
+    tines: Tines
 
     # Index of a plane across an axis, from 0; with `"squeeze"`.
     wall: Integer
@@ -2515,6 +2524,46 @@ class TimeControl(TypedDict, total=False):
 
     # Number of FEM steps, with grains DEM steps; or `end`; 1–10¹²; with `solid_step`, `grain_step`; rounded up to whole windows.
     steps: Integer
+
+
+class Tines(TypedDict, total=False):
+    """`[compaction.tines]`: pairs of blades that enter beside a lifted sleeper and press the stones below it."""
+
+    # Amplitude A of A sin 2πft along the track [m]; ≥ 0.
+    amplitude: Required[Quantity]
+
+    # Positions of the pairs from the centre of a sleeper, across the track [m].
+    at: Required[Quantities]
+
+    # Depth of the tips below the base of the lifted sleeper [m].
+    depth: Required[Quantity]
+
+    # Force at which a blade closes no further, but vibrates [N]; default none; > 0.
+    force: Quantity
+
+    # Distance of a blade from the sleeper before it closes [m]; > `travel` + `amplitude`.
+    gap: Required[Quantity]
+
+    # Time closed, before the blades leave [s]; default 0.1; ≥ 0.
+    hold: Quantity
+
+    # Speed of insertion [m/s]; default 1; > 0.
+    insertion: Quantity
+
+    # Lift of the sleeper [m]; ≥ 0.
+    lift: Required[Quantity]
+
+    # Name of a `[[material]]`.
+    material: Required[str]
+
+    # Width across the track, thickness along it, length of a blade [m]; > 0.
+    size: Required[Quantities]
+
+    # Speed of lift and of closing [m/s]; default 0.1; > 0.
+    squeeze: Quantity
+
+    # Longest way of a blade towards the sleeper [m]; > 0.
+    travel: Required[Quantity]
 
 
 class Track(TypedDict, total=False):

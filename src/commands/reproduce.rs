@@ -1,5 +1,6 @@
 //! `trackbed reproduce`: a finished run again, compared with its results file by file.
 
+use super::archive;
 use super::output::print;
 use crate::cli::{ReproduceArgs, RunArgs};
 use serde_json::Value;
@@ -8,16 +9,16 @@ use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 use trackbed_input::model::read_scene;
-use trackbed_input::scene::Document;
+use trackbed_input::scene::{Document, Scene};
 use trackbed_io::failure::Failure;
 use trackbed_io::message;
-use trackbed_run::{RunFile, scene_hash};
+use trackbed_run::{RunFile, hash_after, scene_hash, state_hash};
 
 /// Not compared: times of the clock, state of the program, pages of other commands.
 const OTHERS: [&str; 6] = ["checkpoint", "end.state", "log.txt", "report.html", "run.json", "run.lock"];
 
 /// Keys of `summary.json` that depend on clock and machine.
-const MACHINE: [&str; 10] = [
+const MACHINE: [&str; 11] = [
     "stages.seconds",
     "newton.assembly_seconds",
     "newton.factor_seconds",
@@ -28,9 +29,18 @@ const MACHINE: [&str; 10] = [
     "model.predicted_memory",
     "version",
     "scene_hash",
+    "libraries.path",
 ];
 
-/// Runs the scene of `args.results` by `run` and compares.
+/// Finished run whose input files are as they were.
+struct Finished {
+    file: RunFile,
+    document: Document,
+    scene: Scene,
+}
+
+/// Runs the scene of `args.results`, a directory or an archive, by `run` and compares; with `--archive`,
+/// writes an archive instead.
 ///
 /// # Errors
 /// No finished run, changed input files, differences. See [`Failure`].
@@ -38,8 +48,14 @@ pub fn reproduce(
     args: ReproduceArgs,
     run: impl FnOnce(RunArgs) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
-    let dir = &args.results;
-    let file = unchanged(dir)?;
+    if let Some(file) = &args.archive {
+        return pack(&args.results, file);
+    }
+    let (dir, moved) = match args.results.is_file() {
+        true => archive::unpack(&args.results).map(|(dir, scene)| (dir, Some(scene)))?,
+        false => (args.results, None),
+    };
+    let Finished { file, .. } = unchanged(&dir, moved.as_deref())?;
     if file.version != env!("CARGO_PKG_VERSION") {
         let version = env!("CARGO_PKG_VERSION");
         message::warn(&format!("{}: run by version {}, this is {version}", dir.display(), file.version));
@@ -59,24 +75,37 @@ pub fn reproduce(
         quiet: true,
         ..RunArgs::default()
     })?;
-    let (equal, differences) = compare(dir, &out)?;
+    let (equal, differences) = compare(&dir, &out)?;
     if differences.is_empty() {
         let count = if equal == 1 { "1 file".into() } else { format!("{equal} files") };
         return print(&format!("{}: reproduced, {count} identical\n", dir.display()));
     }
-    let list = differences.join("\n  ");
+    let list = differences.join("; ");
     let of = equal + differences.len();
-    Err(Failure::Other(format!("{}: {} of {of} files differ:\n  {list}", dir.display(), differences.len())))
+    Err(Failure::Other(format!("{}: {} of {of} files differ: {list}", dir.display(), differences.len())))
 }
 
-/// Origin of a finished run whose input files are as they were.
-fn unchanged(dir: &Path) -> Result<RunFile, Failure> {
+/// Archives a finished run.
+fn pack(dir: &Path, file: &Path) -> Result<(), Failure> {
+    archive::check(file, dir)?;
+    let run = unchanged(dir, None)?;
+    let mut results = BTreeMap::new();
+    collect(dir, "", &archive::OMITTED, &mut results)?;
+    archive::write(file, &run.file, (&run.document, &run.scene), &results)?;
+    print(&format!("{} written\n", file.display()))
+}
+
+/// Finished run whose input files are as they were; its scene may have `moved`.
+fn unchanged(dir: &Path, moved: Option<&Path>) -> Result<Finished, Failure> {
     let refuse = |file: &Path, found: &str, expected: &str| {
         Err(Failure::Input(format!("{}: found {found}, expected {expected}", file.display())))
     };
-    let Some(file) = RunFile::read(dir) else {
+    let Some(mut file) = RunFile::read(dir) else {
         return refuse(&dir.join("run.json"), "nothing readable", "the results of a run");
     };
+    if let Some(scene) = moved {
+        file.scene = scene.display().to_string();
+    }
     let summary = dir.join("summary.json");
     let content: Value =
         fs::read(&summary).ok().and_then(|b| serde_json::from_slice(&b).ok()).unwrap_or_default();
@@ -93,18 +122,22 @@ fn unchanged(dir: &Path) -> Result<RunFile, Failure> {
         return refuse(scene, "another text than in run.json of the results", "the scene as it was run");
     }
     let parsed = read_scene(&document)?;
-    if content["scene_hash"] != scene_hash(&document, &parsed) {
+    let mut hash = scene_hash(&document, &parsed);
+    if let Some(from) = &file.from {
+        hash = hash_after(&hash, &state_hash(Path::new(from))?);
+    }
+    if content["scene_hash"] != hash {
         let expected = "the files named in the scene as they were run";
         return refuse(scene, "a changed mesh, table or included file", expected);
     }
-    Ok(file)
+    Ok(Finished { file, document, scene: parsed })
 }
 
 /// Number of equal files and what differs.
 fn compare(before: &Path, after: &Path) -> Result<(usize, Vec<String>), Failure> {
     let (mut old, mut new) = (BTreeMap::new(), BTreeMap::new());
-    collect(before, "", &mut old)?;
-    collect(after, "", &mut new)?;
+    collect(before, "", &OTHERS, &mut old)?;
+    collect(after, "", &OTHERS, &mut new)?;
     let (mut equal, mut differences) = (0, Vec::new());
     for (name, path) in &old {
         let Some(other) = new.remove(name) else {
@@ -124,18 +157,23 @@ fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
     fs::read(path).map_err(|e| Failure::Other(format!("{}: {e}", path.display())))
 }
 
-/// Files below `dir` by name relative to it.
-fn collect(dir: &Path, prefix: &str, out: &mut BTreeMap<String, PathBuf>) -> Result<(), Failure> {
+/// Files below `dir` by name relative to it, without its entries `omitted`.
+fn collect(
+    dir: &Path,
+    prefix: &str,
+    omitted: &[&str],
+    out: &mut BTreeMap<String, PathBuf>,
+) -> Result<(), Failure> {
     let failure = |e| Failure::Other(format!("{}: {e}", dir.display()));
     for entry in fs::read_dir(dir).map_err(failure)? {
         let path = entry.map_err(failure)?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if prefix.is_empty() && OTHERS.contains(&name.as_str()) {
+        if prefix.is_empty() && omitted.contains(&name.as_str()) {
             continue;
         }
         let name = format!("{prefix}{name}");
         if path.is_dir() {
-            collect(&path, &format!("{name}/"), out)?;
+            collect(&path, &format!("{name}/"), omitted, out)?;
         } else {
             out.insert(name, path);
         }
@@ -155,8 +193,14 @@ fn difference(name: &str, old: &[u8], new: &[u8]) -> Option<String> {
             path.map(|path| format!("first at {path}"))
         }
         Some("csv") => Some(of_tables(old, new)),
+        Some("bib") if without_version(old) == without_version(new) => None,
         _ => Some("other content".into()),
     }
+}
+
+/// Bibliography without the version of the program.
+fn without_version(text: &[u8]) -> Vec<&[u8]> {
+    text.split(|byte| *byte == b'\n').filter(|line| !line.starts_with(b"  version = ")).collect()
 }
 
 /// Path of the first different value, except machine data.
@@ -213,5 +257,12 @@ mod tests {
         assert_eq!(table.as_deref(), Some("by up to 2.5e-1 of the largest z"));
         assert_eq!(at("a.csv", "t\n0\n", "t\n0\n1\n").as_deref(), Some("other columns or rows"));
         assert_eq!(at("a.vtu", "1", "2").as_deref(), Some("other content"));
+        let entry =
+            |version, year| format!("@misc{{a,\n  version = {{{version}}},\n  year = {{{year}}},\n}}\n");
+        assert_eq!(at("a.bib", &entry("0.1.0", 1979), &entry("0.2.0", 1979)), None);
+        assert_eq!(
+            at("a.bib", &entry("0.1.0", 1979), &entry("0.1.0", 1980)).as_deref(),
+            Some("other content")
+        );
     }
 }

@@ -9,7 +9,7 @@ pub mod plot;
 mod quantity;
 mod sections;
 
-use data::RunData;
+pub use data::RunData;
 use maud::Markup;
 use std::path::{Path, PathBuf};
 use trackbed_io::failure::Failure;

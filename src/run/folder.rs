@@ -6,11 +6,12 @@ use trackbed_input::model::OutputPlan;
 use trackbed_io::failure::Failure;
 use trackbed_io::write::{FORMATS, Format};
 
-const FILES: [&str; 25] = [
+const FILES: [&str; 26] = [
     "push.csv",
     "breaks.csv",
     "summary.json",
     "log.txt",
+    "sources.bib",
     "history.csv",
     "cycles.csv",
     "nodes.csv",

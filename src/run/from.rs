@@ -19,7 +19,7 @@ pub const FILE: &str = "end.state";
 pub const END: &str = "end";
 
 /// May be changed, added or removed.
-const FREE: [&str; 17] = [
+const FREE: [&str; 18] = [
     "title",
     "gravity",
     "include",
@@ -30,6 +30,7 @@ const FREE: [&str; 17] = [
     "wind",
     "water",
     "track.load",
+    "track.jump",
     "track.push",
     "solid.load",
     "solid.newton",
@@ -57,11 +58,16 @@ pub struct Previous {
     pub hash: String,
     /// Whether the run was coupled.
     pub coupled: bool,
+    /// First compaction stage that the run did not have, if any.
+    pub added: Option<usize>,
 }
 
 /// Describes the imported data; `bed`: grains only.
-pub fn carries(bed: bool) -> &'static str {
+pub fn carries(bed: bool, added: bool) -> &'static str {
     match bed {
+        false if added => {
+            "--from: grains, walls and sleepers stand where the earlier run left them, at rest, for the added compaction; contact history, solid, time, loads, settlement and energy balance start anew"
+        }
         true => {
             "--bed: grains with their motion, contact history and bonds are imported from the earlier run; walls, sleepers, solid, loads and their contacts start from scratch, without deposition and compaction"
         }
@@ -94,7 +100,9 @@ pub fn open(dir: &Path, document: &Document, origin: &Origin, bed: bool) -> Resu
         return Err(wrong.refusal(document));
     }
     let coupled = old.keys().any(|key| key.starts_with("solid."));
-    Ok(Previous { loaded, hash, coupled })
+    let (stages, now) = (compaction_stages(&old), compaction_stages(&document.keys()));
+    let added = (!bed && now > stages).then_some(stages);
+    Ok(Previous { loaded, hash, coupled, added })
 }
 
 /// Returns the hash of scene and initial state.
@@ -105,11 +113,44 @@ pub fn hash_after(scene: &str, state: &str) -> String {
     hash.hex()
 }
 
+/// Returns the hash of the final state in `dir`, as [`hash_after`] takes it.
+///
+/// # Errors
+/// No state, or a damaged one.
+pub fn state_hash(dir: &Path) -> Result<String, Failure> {
+    let (_, _, hash) =
+        checkpoint::read_file(&dir.join(FILE)).map_err(|e| Failure::Input(format!("--from: {e}")))?;
+    Ok(hash)
+}
+
 /// Rejects scenes that would drop part of the state.
 ///
 /// # Errors
 /// Input errors.
-pub fn check(job: &Job, document: &Document, source: Source<'_>) -> Result<(), Failure> {
+pub fn check(
+    job: &Job,
+    document: &Document,
+    source: Source<'_>,
+    added: Option<usize>,
+) -> Result<(), Failure> {
+    if let Some(stage) = added {
+        let yields = job.solid.as_ref().is_some_and(|solid| !solid.is_linear());
+        let bonds = job.grains.as_ref().is_some_and(|g| !g.bonds.is_empty());
+        let flow =
+            job.grains.as_ref().is_some_and(|g| g.flow.as_ref().is_some_and(|flow| !flow.inlets.is_empty()));
+        let moves = job.grains.as_ref().is_some_and(|g| g.walls.others.iter().any(|w| *w != w.at_rest()));
+        let why = [
+            (yields, "materials that yield"),
+            (moves, "walls that move"),
+            (bonds, "bonds, which may be broken"),
+            (flow, "inlets, whose grains wait"),
+        ];
+        if let Some((_, what)) = why.into_iter().find(|(there, _)| *there) {
+            let found = format!("a stage after those of {}", source.dir.display());
+            let expected = format!("no added stage in a scene with {what}");
+            return Err(document.error(&format!("compaction.{stage}"), found, expected).into());
+        }
+    }
     if source.bed && job.grains.is_none() {
         let expected = "a scene with grains for --bed";
         return Err(document.error("grains", "nothing", expected).into());
@@ -171,7 +212,11 @@ fn difference(
 ) -> Option<Difference> {
     let new = document.keys();
     let keys: BTreeSet<&String> = old.keys().chain(new.keys()).collect();
-    let fits = |key: &str| if bed { may_be_beside(key, old, &new) } else { may_be(key, old, &new) };
+    let stages = compaction_stages(old);
+    let fits = |key: &str| match bed {
+        true => may_be_beside(key, old, &new),
+        false => may_be(key, old, &new) || is_added(key, stages),
+    };
     let other = keys.into_iter().find(|key| !fits(key));
     if let Some(key) = other {
         let text = |keys: &BTreeMap<String, String>| keys.get(key).map_or("nothing", |v| v).to_string();
@@ -195,6 +240,19 @@ fn difference(
 
 const OWN_MODEL: &str = "--from requires the same model (--bed imports grains into another)";
 const OWN_GRAINS: &str = "--bed requires the same grains";
+
+/// Number of compaction stages.
+fn compaction_stages(keys: &BTreeMap<String, String>) -> usize {
+    let index = |key: &String| key.strip_prefix("compaction.")?.split('.').next()?.parse::<usize>().ok();
+    keys.keys().filter_map(index).max().map_or(0, |last| last + 1)
+}
+
+/// Whether a key belongs to a stage after the `stages` of the earlier run.
+fn is_added(key: &str, stages: usize) -> bool {
+    key.strip_prefix("compaction.")
+        .and_then(|rest| rest.split('.').next()?.parse::<usize>().ok())
+        .is_some_and(|index| index >= stages)
+}
 
 /// Bodies refer to materials by index.
 fn may_be_beside(key: &str, old: &BTreeMap<String, String>, new: &BTreeMap<String, String>) -> bool {
@@ -221,7 +279,10 @@ fn may_be(key: &str, old: &BTreeMap<String, String>, new: &BTreeMap<String, Stri
     let in_table = |table: &&str| is_in(key, table);
     // The state contains grain masses.
     let mass = key == "time.mass_factor" || key.starts_with("material.") && last == "density";
+    // Meshed sleepers are held by the solid.
+    let hold = is_in(key, "track.sleeper.hold") && !new.keys().any(|k| is_in(k, "track.sleeper.mesh"));
     before == now
+        || hold
         || !mass && FREE.iter().any(in_table)
         || both
             && !mass
@@ -252,7 +313,10 @@ mod tests {
             ("title", "\"b\"", true),
             ("track.load.cycles", "20", true),
             ("track.load.maximum", "3.0", true),
+            ("track.jump.largest", "3.0", true),
+            ("compaction.0.force", "3.0", false),
             ("track.loads", "3.0", false),
+            ("track.sleeper.hold", "[\"x\"]", true),
             ("material.0.friction", "0.7", true),
             ("material.0.name", "\"rock\"", false),
             ("material.0.density", "2700.0", false),
@@ -271,6 +335,10 @@ mod tests {
         let mut fewer = old.clone();
         fewer.remove("grains.0.count");
         assert!(!may_be("grains.0.count", &old, &fewer));
+        let stages = keys("[[compaction]]\nkind = \"bedding\"\n[[compaction]]\nkind = \"pouring\"\n");
+        assert_eq!([compaction_stages(&old), compaction_stages(&stages)], [0, 2]);
+        assert!(is_added("compaction.2.kind", 2) && is_added("compaction.10.tines.gap", 2));
+        assert!(!is_added("compaction.1.kind", 2) && !is_added("coupling.2", 2));
         let named = keys("[track.load]\nfile = \"a.csv\"\n[solid]\nmesh = \"b.cdb\"");
         let free = files(&named, |key| may_be_free(key, false));
         assert_eq!(free.collect::<Vec<_>>(), [PathBuf::from("a.csv")]);

@@ -1,6 +1,7 @@
 //! Run of a scene.
 
 mod bed;
+mod bibtex;
 mod bond_output;
 mod checkpoint;
 mod checkpoint_store;
@@ -44,6 +45,7 @@ pub use checkpoint::check_file as check_checkpoint;
 pub use checkpoint_store::Interrupt;
 pub use companion::{Accompanied, Companion, Shown};
 pub use device::Place;
+pub use from::{hash_after, state_hash};
 pub use hash::Hash;
 pub use lock::Lock;
 pub use memory::{Prediction, methods, parse_size, size};
@@ -153,7 +155,7 @@ pub fn run(scene: &Path, options: &Options) -> Result<Outcome, Failure> {
     pool.install(|| {
         let job = model::resolve(&document, &parsed)?;
         if let Some(source) = source {
-            from::check(&job, &document, source)?;
+            from::check(&job, &document, source, previous.as_ref().and_then(|p| p.added))?;
         }
         device::check(options.device, &job)?;
         ranks::check(&options.ranks, options.device, &job)?;
@@ -223,10 +225,11 @@ fn begun<'a>(
     let mut state = RunState::new(loaded, summary);
     if let Some(mut before) = previous.filter(|_| state.loaded.is_none()) {
         if options.verbosity > Verbosity::Quiet {
-            message::note(from::carries(options.bed));
+            message::note(from::carries(options.bed, before.added.is_some()));
         }
         match options.bed {
             true => state.carried = Some(Carried::read(&mut before.loaded, before.coupled)?),
+            false if before.added.is_some() => state.reworked = Some(before),
             false => state.loaded = Some(before.loaded),
         }
     }

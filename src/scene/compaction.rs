@@ -27,14 +27,18 @@ pub struct Compaction {
     pub direction: Option<[f64; 3]>,
     /// Amplitude A of A sin 2πft [m]; > 0; with `"vibration"`.
     pub amplitude: Option<Quantity<Length>>,
-    /// Frequency f [Hz]; > 0; with `"vibration"`, `"tamping"`, `"bedding"`.
+    /// Frequency f [Hz]; > 0; with `"vibration"`, `"tamping"`, `"bedding"`, `"tines"`, `"stabilizing"`.
     pub frequency: Option<Quantity<Frequency>>,
-    /// Cycles, at each position; ≥ 1; with `"vibration"`, `"tamping"`, `"bedding"`.
+    /// Cycles, at each position; ≥ 1; with `"vibration"`, `"tamping"`, `"bedding"`, `"stabilizing"`.
     pub cycles: Option<u32>,
     /// Rigid box that moves vertically; with `"tamping"`.
     pub plate: Option<Plate>,
-    /// Force F sin² πft, besides weight [N]; > 0; with `"tamping"` (plate), `"bedding"` (each rigid sleeper).
+    /// Force F sin² πft, besides weight [N]; > 0; with `"tamping"` (plate), `"bedding"` (each rigid sleeper); constant with `"stabilizing"`.
     pub force: Option<Quantity<Force>>,
+    /// Force F sin 2πft on each rigid sleeper across the track [N]; > 0; with `"stabilizing"`.
+    pub sway: Option<Quantity<Force>>,
+    /// Tines of a tamping machine; with `"tines"`.
+    pub tines: Option<Tines>,
     /// Successive plate positions `[[x, y], …]` [m]; with `"tamping"`.
     pub at: Option<Vec<[Quantity<Length>; 2]>>,
     /// Index of a plane across an axis, from 0; with `"squeeze"`.
@@ -67,6 +71,55 @@ pub enum CompactionKind {
     Bedding,
     /// Grains dropped around sleepers.
     Pouring,
+    /// Sleepers lifted and tamped by vibrating tines, one after the other.
+    Tines,
+    /// Sleepers loaded and shaken across the track, held or not.
+    Stabilizing,
+}
+
+impl CompactionKind {
+    /// Name in scenes.
+    pub fn name(self) -> &'static str {
+        match self {
+            CompactionKind::Vibration => "vibration",
+            CompactionKind::Tamping => "tamping",
+            CompactionKind::Squeeze => "squeeze",
+            CompactionKind::Bedding => "bedding",
+            CompactionKind::Pouring => "pouring",
+            CompactionKind::Tines => "tines",
+            CompactionKind::Stabilizing => "stabilizing",
+        }
+    }
+}
+
+/// `[compaction.tines]`: pairs of blades that enter beside a lifted sleeper and press the stones below it.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Tines {
+    /// Width across the track, thickness along it, length of a blade [m]; > 0.
+    pub size: [Quantity<Length>; 3],
+    /// Name of a `[[material]]`.
+    pub material: String,
+    /// Positions of the pairs from the centre of a sleeper, across the track [m].
+    pub at: Vec<Quantity<Length>>,
+    /// Lift of the sleeper [m]; ≥ 0.
+    pub lift: Quantity<Length>,
+    /// Depth of the tips below the base of the lifted sleeper [m].
+    pub depth: Quantity<Length>,
+    /// Distance of a blade from the sleeper before it closes [m]; > `travel` + `amplitude`.
+    pub gap: Quantity<Length>,
+    /// Longest way of a blade towards the sleeper [m]; > 0.
+    pub travel: Quantity<Length>,
+    /// Amplitude A of A sin 2πft along the track [m]; ≥ 0.
+    pub amplitude: Quantity<Length>,
+    /// Force at which a blade closes no further, but vibrates [N]; default none; > 0.
+    pub force: Option<Quantity<Force>>,
+    /// Speed of insertion [m/s]; default 1; > 0.
+    pub insertion: Option<Quantity<Velocity>>,
+    /// Speed of lift and of closing [m/s]; default 0.1; > 0.
+    pub squeeze: Option<Quantity<Velocity>>,
+    /// Time closed, before the blades leave [s]; default 0.1; ≥ 0.
+    pub hold: Option<Quantity<Time>>,
 }
 
 /// A rigid plate that presses.

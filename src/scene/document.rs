@@ -127,7 +127,8 @@ impl Document {
     }
 
     /// Sets keys, given as `key.path=value`, in order. An empty value removes the key; a value that is not TOML
-    /// is a string. Tables of an array are addressed by index or name: `solid.material.clay.young=2e7`.
+    /// is a string. Tables of an array are addressed by index or name: `solid.material.clay.young=2e7`; a table
+    /// at the index after the last is appended.
     /// `include` replaces the included files.
     ///
     /// # Errors
@@ -174,6 +175,14 @@ impl Document {
         let mut parts = parents.split('.').filter(|p| !p.is_empty());
         while let Some(key) = parts.next() {
             if !table.contains_key(key) {
+                // The first table of a list.
+                if last == "0" && parts.clone().next().is_none() && matches!(parsed, DeValue::Table(_)) {
+                    let mut list = DeArray::new();
+                    list.push(Spanned::new(span.clone(), parsed));
+                    let key = Spanned::new(span.clone(), key.to_string().into());
+                    table.insert(key, Spanned::new(span, DeValue::Array(list)));
+                    return Ok(());
+                }
                 table.insert(
                     Spanned::new(span.clone(), key.to_string().into()),
                     Spanned::new(span.clone(), DeValue::Table(DeTable::new())),
@@ -183,8 +192,13 @@ impl Document {
                 DeValue::Table(t) => t,
                 DeValue::Array(a) => {
                     let count = a.len();
-                    let index: Option<usize> = parts.next().and_then(|i| i.parse().ok());
-                    match index.and_then(|i| a.get_mut(i)).map(|v| v.get_mut()) {
+                    let next = parts.next();
+                    let index: Option<usize> = next.unwrap_or(last).parse().ok();
+                    if next.is_none() && index == Some(count) && matches!(parsed, DeValue::Table(_)) {
+                        a.push(Spanned::new(span, parsed));
+                        return Ok(());
+                    }
+                    match index.filter(|_| next.is_some()).and_then(|i| a.get_mut(i)).map(|v| v.get_mut()) {
                         Some(DeValue::Table(t)) => t,
                         _ => {
                             let expected =

@@ -113,6 +113,20 @@ pub enum HeldMotion {
     Rz,
 }
 
+impl HeldMotion {
+    /// Name in scenes.
+    pub fn name(self) -> &'static str {
+        match self {
+            HeldMotion::X => "x",
+            HeldMotion::Y => "y",
+            HeldMotion::Z => "z",
+            HeldMotion::Rx => "rx",
+            HeldMotion::Ry => "ry",
+            HeldMotion::Rz => "rz",
+        }
+    }
+}
+
 /// Vertical load on the sleepers' tops, or wheels on the rail.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

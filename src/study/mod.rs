@@ -37,8 +37,9 @@ mod trade;
 
 pub use file::{Norm, QuantityTable};
 pub use label::file_names;
-pub use layout::{aligned, four_digits, markdown};
+pub use layout::{Cell, Table, aligned, four_digits, markdown};
 pub use page::{is_study, write as report};
+pub use plan::seed_keys;
 pub use process::{command, verdict};
 pub use quantity::{Quantity, resolve_one as quantity};
 pub use sample::number;

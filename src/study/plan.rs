@@ -275,7 +275,7 @@ fn runs(
         }
         let keys = match file.seeds.as_ref().and_then(|s| s.keys.clone()) {
             Some(keys) => keys,
-            None => seed_keys(scene, setting).map_err(|e| of_setting(document, &setting.label, &e))?,
+            None => seed_keys(scene, &setting.set).map_err(|e| of_setting(document, &setting.label, &e))?,
         };
         if keys.is_empty() {
             let found = "nothing, and a scene without grains and without keys `seed`";
@@ -293,9 +293,12 @@ fn runs(
 }
 
 /// Seeds of grain groups and every other `seed`.
-fn seed_keys(scene: &Document, setting: &Setting) -> Result<Vec<String>, SceneError> {
+///
+/// # Errors
+/// Wrong overrides.
+pub fn seed_keys(scene: &Document, set: &[String]) -> Result<Vec<String>, SceneError> {
     let mut document = scene.clone();
-    document.set_all(&setting.set)?;
+    document.set_all(set)?;
     let tree: toml::Table = document.read()?;
     let mut keys = BTreeSet::new();
     for (key, value) in &tree {

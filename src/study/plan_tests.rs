@@ -73,7 +73,7 @@ fn assigns_seeds_to_scene_keys() {
     fs::write(&scene, SCENE).unwrap();
     let setting = Setting { label: String::new(), levels: Vec::new(), set: Vec::new() };
     assert_eq!(
-        seed_keys(&Document::open(&scene).unwrap(), &setting).unwrap(),
+        seed_keys(&Document::open(&scene).unwrap(), &setting.set).unwrap(),
         ["bond.0.spread.seed", "grains.0.seed", "grains.1.seed"]
     );
     fs::remove_dir_all(&dir).unwrap();

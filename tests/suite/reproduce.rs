@@ -48,3 +48,18 @@ fn finished_run_is_reproduced() {
     assert_eq!(nothing.code, 2);
     assert!(nothing.stderr.contains("run.json: found nothing readable, expected the results of a run"));
 }
+
+#[test]
+fn a_run_from_another_is_reproduced() {
+    let folder = Folder::new("reproduce_from");
+    let scene = repository().join("inputs/grains/rolling.toml").display().to_string();
+    let go = |words: &[&str]| trackbed_in(&folder.join(""), words).good();
+    go(&["run", &scene, "--out", "first", "--quiet"]);
+    go(&["run", &scene, "--out", "second", "--from", "first", "--quiet"]);
+    let same = go(&["reproduce", "second"]);
+    assert!(same.stdout.starts_with("second: reproduced, "), "{same:?}");
+    // Another final state is another run.
+    go(&["run", &scene, "--out", "first", "--force", "--quiet", "--set", "time.end=0.01"]);
+    let other = trackbed_in(&folder.join(""), ["reproduce", "second", "--out", "third"]);
+    assert!(other.code == 2 && !folder.join("third").exists(), "{other:?}");
+}

@@ -287,7 +287,16 @@ fn disabled_output_is_not_written() {
     names.sort();
     assert_eq!(
         names,
-        ["cycles.csv", "history.csv", "log.txt", "run.json", "settlement.svg", "sleeper.svg", "summary.json"]
+        [
+            "cycles.csv",
+            "history.csv",
+            "log.txt",
+            "run.json",
+            "settlement.svg",
+            "sleeper.svg",
+            "sources.bib",
+            "summary.json"
+        ]
     );
 }
 
@@ -356,12 +365,12 @@ fn earlier_results_are_removed() {
         assert!(!out.join(name).exists(), "{name} is of another run");
     }
 
-    // A failure before the first frame leaves summary and log only.
+    // A failure before the first frame leaves summary, log and sources only.
     folder.write("scene.toml", &one_in_the_other());
     fails(&folder, &["overlap"]);
     assert_eq!(
         snapshot(&out).into_keys().collect::<Vec<_>>(),
-        ["log.txt", "notes.txt", "run.json", "summary.json"]
+        ["log.txt", "notes.txt", "run.json", "sources.bib", "summary.json"]
     );
 }
 

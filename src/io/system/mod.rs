@@ -30,6 +30,13 @@ fn reason(error: &libloading::Error) -> String {
     source.unwrap_or_else(|| error.to_string())
 }
 
+/// Name of the CPU, on systems with `/proc`.
+pub fn cpu_name() -> Option<String> {
+    let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
+    let line = text.lines().find(|line| line.starts_with("model name"))?;
+    Some(line.split_once(':')?.1.trim().to_string())
+}
+
 /// I/O error with a remedy.
 pub fn words(error: &io::Error) -> String {
     let remedy = if lacks_files(error) { "; raise the limit of open files (ulimit -n)" } else { "" };

@@ -172,16 +172,27 @@ fn left(
             stages.push(expected(&name, whole * column.first * longest(plan)));
         }
     }
-    let mut seconds = whole * column.pace * job.end;
+    let end = simulated(job);
+    let mut seconds = whole * column.pace * end;
     if let Some(solid) = &job.solid
         && let Some((window, theta)) = window(job, grains, ground.as_ref())
     {
-        let (windows, step) = (job.end / window, solid::step(solid, theta, window)?);
+        let (windows, step) = (end / window, solid::step(solid, theta, window)?);
         seconds +=
             step * ground.as_ref().map_or(windows, |ground| solid::steps(solid, ground, grains, windows));
     }
     stages.push(expected(RUN, seconds));
     Ok(stages)
+}
+
+/// Simulated time [s], if cycle jumps are not shortened.
+fn simulated(job: &Job) -> f64 {
+    let track = job.grains.as_ref().map(|grains| &grains.track);
+    let jumps = track.and_then(|t| Some((t.after.jump.as_ref()?, t.load.as_ref()?)));
+    jumps.map_or(job.end, |(jump, load)| {
+        let skipped = load.cycles() - jump.fewest_simulated(load.cycles());
+        job.end - f64::from(skipped) * load.period()
+    })
 }
 
 /// Grading and cache misses cost more in a bed than in a column.

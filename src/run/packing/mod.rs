@@ -9,7 +9,7 @@ mod stage_energy;
 
 pub use bed_stage::BedStage;
 pub use records::{
-    CompactionRecord, FoulingRecord, GrownOverlap, GrowthRecord, MeasureRecord, PackingRecord,
+    CompactionRecord, FoulingRecord, GrownOverlap, GrowthRecord, MeasureRecord, PackingRecord, TampingRecord,
 };
 pub(super) use report::report;
 pub use stage_energy::StageEnergy;

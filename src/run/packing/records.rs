@@ -57,6 +57,23 @@ pub struct CompactionRecord {
     pub wall_force: Option<f64>,
 }
 
+/// Tamping of a sleeper. Always written in full: fields are unnamed in checkpoints.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct TampingRecord {
+    /// Number of the sleeper, from 1.
+    pub sleeper: usize,
+    /// Largest upward force on a blade during insertion, mean of a period of vibration [N].
+    pub insertion_force: f64,
+    /// Largest force of a blade towards the sleeper, mean of a period of vibration [N].
+    pub squeeze_force: f64,
+    /// Mean way of the blades towards the sleeper [m].
+    pub travel: f64,
+    /// Work of the blades on the grains [J].
+    pub work: f64,
+    /// Rise of the sleeper, after release [m].
+    pub raised: f64,
+}
+
 /// Final grains, without sleepers.
 #[derive(Debug, Serialize)]
 pub struct PackingRecord {

@@ -1,13 +1,14 @@
 //! Packing lines of the report.
 
 use super::bed_stage::BedStage;
-use super::records::{CompactionRecord, GrowthRecord, PackingRecord};
+use super::records::{CompactionRecord, GrowthRecord, PackingRecord, TampingRecord};
 
 /// Formats packing lines.
 pub fn report(
     beds: &[BedStage],
     growth: &[GrowthRecord],
-    compaction: &[CompactionRecord],
+    (earlier, compaction): (usize, &[CompactionRecord]),
+    tamping: &[TampingRecord],
     packing: Option<&PackingRecord>,
 ) -> Vec<String> {
     let mut lines = Vec::new();
@@ -21,10 +22,21 @@ pub fn report(
         let force = c.wall_force.map_or(String::new(), |f| format!(", force on the plane {f:.3e} N"));
         lines.push(format!(
             "compaction {} ({}): porosity {:.4} to {:.4}{force}",
-            i + 1,
+            earlier + i + 1,
             c.kind,
             c.porosity_before,
             c.porosity_after
+        ));
+    }
+    for t in tamping {
+        lines.push(format!(
+            "sleeper {} tamped: raised {:.2} mm; force of a blade {:.2} kN entering, {:.2} kN closing by {:.0} mm; work {:.0} J",
+            t.sleeper,
+            1e3 * t.raised,
+            1e-3 * t.insertion_force,
+            1e-3 * t.squeeze_force,
+            1e3 * t.travel,
+            t.work
         ));
     }
     lines.extend(beds.iter().flat_map(BedStage::lines));

@@ -35,17 +35,45 @@ pub fn press(
     frequency: f64,
     cycles: u32,
 ) -> Result<(), Failure> {
-    let (begun, end) = (bed.state.time, f64::from(cycles) / frequency);
+    let share = |t: f64| libm::sin(PI * frequency * t).powi(2);
+    load(bed, first, f64::from(cycles) / frequency, |t| Vec3::new(0.0, 0.0, -force * share(t)))
+}
+
+/// Loads the centres of bodies from `first` on for `end` seconds.
+fn load(bed: &mut Bed<'_>, first: usize, end: f64, force: impl Fn(f64) -> Vec3) -> Result<(), Failure> {
+    let begun = bed.state.time;
     let mut applied = Vec::new();
     while bed.state.time - begun < end {
-        let share = libm::sin(PI * frequency * (bed.state.time - begun)).powi(2);
-        let force = Vec3::new(0.0, 0.0, -force * share);
+        let force = force(bed.state.time - begun);
         applied.clear();
         let on = |body| AppliedForce { body, force, point: bed.state.position(body) };
         applied.extend((first..bed.model.body_count()).map(on));
         bed.step(&applied)?;
     }
     Ok(())
+}
+
+/// Loads bodies from `first` on with a constant force while F sin(2πft) shakes them along an axis: vertical
+/// force [N], amplitude [N], axis. Both rise in the first and fall in the last quarter of the cycles, so that a
+/// free body returns.
+///
+/// # Errors
+/// As [`Bed::step`].
+pub fn stabilize(
+    bed: &mut Bed<'_>,
+    first: usize,
+    (force, sway, across): (f64, f64, usize),
+    frequency: f64,
+    cycles: u32,
+) -> Result<(), Failure> {
+    load(bed, first, f64::from(cycles) / frequency, |t| {
+        let turns = frequency * t;
+        let edge = (4.0 * turns.min(f64::from(cycles) - turns) / f64::from(cycles)).clamp(0.0, 1.0);
+        let share = libm::sin(0.5 * PI * edge).powi(2);
+        let mut now = Vec3::new(0.0, 0.0, -force * share);
+        now[across] = sway * share * libm::sin(2.0 * PI * turns);
+        now
+    })
 }
 
 /// Returns queued grains in `count` equal layers, lowest first.

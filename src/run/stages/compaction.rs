@@ -1,7 +1,9 @@
 //! Compaction of a deposited bed.
 
 use super::bedding::{self, Poured};
+use super::pressing::Pressed;
 use super::stage::{GrainTime, Packed, RunState, Settled, Stage};
+use super::tines;
 use crate::bed::{Bed, BedProgress, rms_speed, top_below};
 use crate::context::Run;
 use crate::packing::{BedStage, CompactionRecord};
@@ -12,19 +14,14 @@ use std::f64::consts::TAU;
 use trackbed_coupling::surface::SolidSurface;
 use trackbed_dem as dem;
 use trackbed_dem::measure::{BoxRegion, body_volume_in};
-use trackbed_dem::{BodyInput, Vec3};
+use trackbed_dem::{BodyInput, Vec3, WallInput};
 use trackbed_input::model::Job;
 use trackbed_input::model::grains::{CompactionPlan, GrainsPart, Press, refused};
 use trackbed_io::failure::Failure;
 use trackbed_io::progress::Progress;
 
-struct Pressed<'a> {
-    bed: Bed<'a>,
-    steps: u64,
-    rested: bool,
-    region: BoxRegion,
-    wall_force: Option<f64>,
-}
+/// Shift of a stabilized sleeper that causes a warning [m].
+const SHIFT: f64 = 1e-3;
 
 /// Activity shown in progress and errors.
 pub const COMPACTED: &str = "being compacted";
@@ -40,6 +37,8 @@ pub fn longest(plan: &CompactionPlan) -> f64 {
         Press::Tamping { at, frequency, cycles, .. } => {
             at.len() as f64 * (f64::from(*cycles) / frequency + rest)
         }
+        Press::Stabilizing { frequency, cycles, .. } => f64::from(*cycles) / frequency + rest,
+        Press::Tines(tines) => tines.sleepers as f64 * (tines::longest(tines, 2.0 * tines.half[2]) + rest),
     }
 }
 
@@ -61,7 +60,7 @@ impl Stage for Compaction {
 
     fn run<'a>(&self, run: &Run<'a>, state: &mut RunState<'a>) -> Result<(), Failure> {
         let Some(grains) = state.grains.as_mut().filter(|g| g.done < Packed::Finished) else { return Ok(()) };
-        for index in grains.bed.compaction.len()..grains.part.packing.compaction.len() {
+        for index in grains.bed.earlier + grains.bed.compaction.len()..grains.part.packing.compaction.len() {
             grains.keep(run, Packed::Settled)?;
             run.checkpoints.begin();
             compact(run, &mut grains.part, index, grains.ground.as_ref(), &mut grains.bed)?;
@@ -96,8 +95,15 @@ fn compact(
 ) -> Result<(), Failure> {
     let plan = grains.packing.compaction[index].clone();
     let progress = BedProgress::new(Progress::start("compacting", longest(&plan), run.verbosity));
-    let new_bed = |grains: &GrainsPart, bodies| new_bed(run, grains, (&plan, &progress), bodies, surface);
+    let with = |grains: &GrainsPart, bodies, blades| {
+        new_bed(run, grains, (&plan, &progress), (bodies, blades), surface)
+    };
+    let new_bed = |grains: &GrainsPart, bodies| with(grains, bodies, Vec::new());
     let mut bed = new_bed(grains, settled.all())?;
+    if plan.press.needs_sleepers() && settled.sleepers.is_empty() {
+        settled.sleepers = bedding::set_down(&bed, grains, surface);
+        bed = new_bed(grains, settled.all())?;
+    }
     let before = porosity(&bed, settled.bodies.len(), &plan.region);
     let region = plan.region;
     let name = format!("compaction {}: {}", index + 1, plan.press.name());
@@ -106,7 +112,7 @@ fn compact(
         Press::Vibration { planes, amplitude, frequency, cycles } => {
             shake(&mut bed, planes, amplitude, *frequency, *cycles)?;
             let rested = bed.rest(&plan.rest)?;
-            Pressed { steps: bed.state.steps, bed, rested, region, wall_force: None }
+            Pressed::new(bed, rested, region)
         }
         Press::Squeeze { plane, velocity, porosity: target, max_travel } => {
             let (region, reached) = squeeze(&mut bed, &plan.region, *plane, velocity, *target, *max_travel)?;
@@ -118,19 +124,28 @@ fn compact(
                 ));
             }
             grains.place_plane(*plane, bed.state.plane_point(&bed.model, *plane));
-            let contacts = dem::measure::contacts(&bed.model, &bed.state);
-            let on_it = contacts.iter().filter(|c| c.b == dem::Partner::Plane(*plane));
-            let wall_force = Some(on_it.map(|c| c.normal_force).sum());
-            Pressed { steps: bed.state.steps, bed, rested, region, wall_force }
+            let wall_force = Some(force_on(&bed, *plane));
+            Pressed { wall_force, ..Pressed::new(bed, rested, region) }
         }
         Press::Bedding { force, frequency, cycles } => {
-            if settled.sleepers.is_empty() {
-                settled.sleepers = bedding::set_down(&bed, grains, surface);
-                bed = new_bed(grains, settled.all())?;
-            }
             bedding::press(&mut bed, settled.bodies.len(), *force, *frequency, *cycles)?;
             let rested = bed.rest(&plan.rest)?;
-            Pressed { steps: bed.state.steps, bed, rested, region, wall_force: None }
+            Pressed::new(bed, rested, region)
+        }
+        Press::Stabilizing { force, sway, frequency, cycles } => {
+            let across = 1 - grains.track.sleeper.as_ref().map_or(0, |s| s.row.axis);
+            bed = new_bed(grains, freed(settled, across))?;
+            let shaken = (*force, *sway, across);
+            bedding::stabilize(&mut bed, settled.bodies.len(), shaken, *frequency, *cycles)?;
+            let rested = bed.rest(&plan.rest)?;
+            warn_of_shift(settled, &bed, across, &name);
+            Pressed::new(bed, rested, region)
+        }
+        Press::Tines(tines) => {
+            let start = Pressed::new(bed, true, region);
+            let row = grains.track.sleeper.as_ref().expect("sleepers that are tamped").row.clone();
+            let new = |bodies: Vec<BodyInput>, blades: Vec<WallInput>| with(grains, bodies, blades);
+            tines::tamp(start, (tines, &plan.rest), &row, settled, (&name, surface), new)?
         }
         Press::Pouring { parts, layers, .. } => {
             let new = |now: &Settled| new_bed(grains, now.all());
@@ -140,42 +155,84 @@ fn compact(
             Pressed { steps, bed, rested, region, wall_force: None }
         }
         Press::Tamping { .. } => {
-            let start = Pressed { steps: 0, bed, rested: true, region, wall_force: None };
+            let start = Pressed::new(bed, true, region);
             let new = |bodies: Vec<BodyInput>| new_bed(grains, bodies);
             tamp(start, &plan, settled, (&name, surface), new)?
         }
     };
+    let message = finish(settled, &done, (&*grains, index, surface), (&name, before, &poured_from))?;
+    let seconds = progress.finish(&message);
+    settled.stages.push(StageRecord { name, seconds, grain_steps: done.steps, solid_steps: 0, windows: 0 });
+    Ok(())
+}
+
+/// Records a stage and takes its bed; returns a message.
+fn finish(
+    settled: &mut Settled,
+    done: &Pressed<'_>,
+    (grains, index, surface): (&GrainsPart, usize, Option<&SolidSurface>),
+    (name, before, poured_from): (&str, f64, &[BodyInput]),
+) -> Result<String, Failure> {
+    let press = &grains.packing.compaction[index].press;
     let after = porosity(&done.bed, settled.bodies.len(), &done.region);
-    warn_of_bed(settled, &done, (&*grains, index));
-    let stage = (name.as_str(), &plan.press);
-    settled.beds.extend(bed_after(stage, &done.bed, grains, surface, settled.bodies.len()));
-    if let Press::Pouring { parts, level, .. } = &plan.press {
+    warn_of_bed(settled, done, (grains, index));
+    settled.beds.extend(bed_after((name, press), &done.bed, grains, surface, settled.bodies.len()));
+    if let Press::Pouring { parts, level, .. } = press {
         settled.take(&done.bed);
-        bedding::cut(settled, &done.bed, &poured_from, parts, *level);
+        bedding::cut(settled, &done.bed, poured_from, parts, *level);
     } else {
-        settled.energy.push(done.bed.energy(&name)?);
+        settled.energy.push(done.bed.energy(name)?);
         settled.take(&done.bed);
     }
-    let kind = plan.press.name();
-    let seconds = progress.finish(&format!("{kind}: porosity {before:.4} to {after:.4}"));
-    settled.stages.push(StageRecord { name, seconds, grain_steps: done.steps, solid_steps: 0, windows: 0 });
+    let kind = press.name();
     settled.compaction.push(CompactionRecord {
         kind: kind.into(),
         porosity_before: before,
         porosity_after: after,
         wall_force: done.wall_force,
     });
-    Ok(())
+    Ok(format!("{kind}: porosity {before:.4} to {after:.4}"))
+}
+
+fn warn_of_shift(settled: &mut Settled, bed: &Bed<'_>, axis: usize, name: &str) {
+    let first = settled.bodies.len();
+    for (k, sleeper) in settled.sleepers.iter().enumerate() {
+        let shift = bed.state.position(first + k)[axis] - sleeper.position[axis];
+        if shift.abs() > SHIFT {
+            let text = format!("sleeper {} moved by {:.1} mm across the track in {name}", k + 1, 1e3 * shift);
+            settled.warnings.push(text);
+        }
+    }
+}
+
+/// Normal force on a plane [N].
+fn force_on(bed: &Bed<'_>, plane: usize) -> f64 {
+    let contacts = dem::measure::contacts(&bed.model, &bed.state);
+    contacts.iter().filter(|c| c.b == dem::Partner::Plane(plane)).map(|c| c.normal_force).sum()
+}
+
+/// Bodies with sleepers that may move along an axis, held or not.
+fn freed(settled: &Settled, axis: usize) -> Vec<BodyInput> {
+    let mut bodies = settled.all();
+    bodies[settled.bodies.len()..].iter_mut().for_each(|sleeper| sleeper.fixed[axis] = false);
+    bodies
 }
 
 fn new_bed<'b>(
     run: &'b Run<'_>,
     grains: &GrainsPart,
     (plan, progress): (&CompactionPlan, &BedProgress),
-    bodies: Vec<BodyInput>,
+    (bodies, blades): (Vec<BodyInput>, Vec<WallInput>),
     surface: Option<&'b SolidSurface>,
 ) -> Result<Bed<'b>, Failure> {
-    let input = dem::ModelInput { bodies, ..grains.deposition_input(&plan.rest) };
+    let mut input = dem::ModelInput { bodies, ..grains.deposition_input(&plan.rest) };
+    let grips = |part: u32| grains.groups.moving.iter().any(|m| m.part == part);
+    for body in input.bodies.iter_mut().filter(|b| grips(b.part)) {
+        (body.velocity, body.fixed) = (Vec3::zeros(), [true; 6]);
+    }
+    input.names.walls.truncate(input.walls.len());
+    input.names.walls.extend((1..=blades.len()).map(|k| format!("tine {k}")));
+    input.walls.extend(blades);
     let model = dem::Model::new(input).map_err(|e| refused(run.document, &e))?;
     Ok(Bed::new(model, surface, &run.checkpoints, COMPACTED).shown(progress))
 }

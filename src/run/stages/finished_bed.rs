@@ -33,6 +33,8 @@ impl Stage for FinishedBed {
         summary.stages.extend(bed.stages.iter().cloned());
         summary.bed.growth.clone_from(&bed.growth);
         summary.bed.compaction.clone_from(&bed.compaction);
+        summary.bed.earlier = bed.earlier;
+        summary.bed.tamping.clone_from(&bed.tamping);
         summary.bed.beds.clone_from(&bed.beds);
         summary.bed.stage_energy.clone_from(&bed.energy);
         summary.validity.extend(StageEnergy::checks(&bed.energy));

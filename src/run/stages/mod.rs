@@ -10,7 +10,9 @@ mod finished_bed;
 mod growth;
 mod layers;
 mod main_loop;
+mod pressing;
 pub mod reduction;
+mod reworked;
 mod set_down;
 mod settling;
 mod solid_loop;
@@ -19,6 +21,7 @@ mod stage;
 mod statics;
 mod strength_reduction;
 mod time_loop;
+mod tines;
 
 pub use carried::Carried;
 pub use compaction::{COMPACTED, longest};

@@ -1,11 +1,12 @@
 //! Stage interface, and state passed between stages.
 
 use super::carried::Carried;
+use super::reworked;
 use crate::bed::Bed;
 use crate::checkpoint::{self, Loaded, Moment};
 use crate::context::Run;
-use crate::from::END;
-use crate::packing::{BedStage, CompactionRecord, GrownOverlap, GrowthRecord, StageEnergy};
+use crate::from::{END, Previous};
+use crate::packing::{BedStage, CompactionRecord, GrownOverlap, GrowthRecord, StageEnergy, TampingRecord};
 use crate::sources;
 use crate::summary::{StageRecord, Summary};
 use crate::system::CoupledSystem;
@@ -108,6 +109,10 @@ pub struct Settled {
     pub energy: Vec<StageEnergy>,
     /// Bed after the stages.
     pub beds: Vec<BedStage>,
+    /// Compaction stages of an earlier run, not in the records.
+    pub earlier: usize,
+    /// Tamped sleepers.
+    pub tamping: Vec<TampingRecord>,
 }
 
 impl Settled {
@@ -187,6 +192,13 @@ impl GrainsState {
         Ok(state)
     }
 
+    /// Sleepers of an earlier run with the fixed motions of this scene.
+    fn hold_sleepers(&mut self) {
+        if let Some(plan) = self.part.track.rigid_sleeper() {
+            self.bed.sleepers.iter_mut().for_each(|sleeper| sleeper.fixed = plan.row.held);
+        }
+    }
+
     /// Saves a checkpoint between packing stages.
     ///
     /// # Errors
@@ -216,6 +228,8 @@ pub struct RunState<'a> {
     pub loaded: Option<Loaded>,
     /// Imported bed, until used.
     pub carried: Option<Carried>,
+    /// Earlier run whose bed further compaction reworks, until used.
+    pub reworked: Option<Previous>,
     /// Grains, if any.
     pub grains: Option<GrainsState>,
     /// Coupled model, once built.
@@ -237,7 +251,7 @@ pub fn planes(grains: &GrainsPart) -> Vec<dem::Vec3> {
 impl RunState<'_> {
     /// Creates an empty state.
     pub fn new<'a>(loaded: Option<Loaded>, summary: Summary) -> RunState<'a> {
-        RunState { loaded, carried: None, grains: None, coupled: None, summary }
+        RunState { loaded, carried: None, reworked: None, grains: None, coupled: None, summary }
     }
 
     /// Loads the grains.
@@ -262,10 +276,19 @@ impl RunState<'_> {
                 false => grains.bodies = bodies,
             }
             grains.carried = Some(carried);
+        } else if let Some(before) = self.reworked.take().filter(|_| self.loaded.is_none()) {
+            grains.bed = reworked::bed(before, &grains.part)?;
+            grains.done = Packed::Settled;
+            grains.hold_sleepers();
+            let GrainsState { part, bed, .. } = &mut grains;
+            bed.planes.iter().enumerate().for_each(|(k, x)| part.place_plane(k, *x));
         } else if let Some(loaded) = self.loaded.as_mut().filter(|l| l.moment.stage == END) {
             // Initial bed; its state follows.
             match loaded.take::<Option<Settled>>()? {
-                Some(bed) => (grains.bed, grains.done) = (bed, Packed::Finished),
+                Some(bed) => {
+                    (grains.bed, grains.done) = (bed, Packed::Finished);
+                    grains.hold_sleepers();
+                }
                 None => grains.bodies.clone_from(&grains.part.groups.bodies),
             }
         } else if !is_packed(job) {

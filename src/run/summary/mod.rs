@@ -7,8 +7,9 @@ mod verdict;
 pub use records::*;
 pub use verdict::Verdict;
 
+use super::bibtex;
 use super::flow::FlowRecord;
-use super::packing::{BedStage, CompactionRecord, GrowthRecord, PackingRecord, StageEnergy};
+use super::packing::{BedStage, CompactionRecord, GrowthRecord, PackingRecord, StageEnergy, TampingRecord};
 use super::runout::RunoutRecord;
 use super::specimen::SpecimenRecord;
 use super::validity::{Check, LoadCheck};
@@ -140,9 +141,15 @@ pub struct BedRecord {
     /// Groups after growth.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub growth: Vec<GrowthRecord>,
+    /// Compaction stages of an earlier run, not in the records.
+    #[serde(skip)]
+    pub earlier: usize,
     /// Compaction stages.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub compaction: Vec<CompactionRecord>,
+    /// Tamped sleepers.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub tamping: Vec<TampingRecord>,
     /// Bed after packing stages.
     #[serde(rename = "bed", skip_serializing_if = "Vec::is_empty")]
     pub beds: Vec<BedStage>,
@@ -174,7 +181,7 @@ impl Summary {
         Ok(())
     }
 
-    /// Writes `log.txt` in `dir`.
+    /// Writes `log.txt` and `sources.bib` in `dir`.
     ///
     /// # Errors
     /// I/O errors.
@@ -185,7 +192,7 @@ impl Summary {
             write!(out, "{}\nstatus: {}\n{}{sources}", self.run.title, self.run.status, self.report(true))
                 .map_err(|source| WriteError::Io { file: file.clone(), source })
         })?;
-        Ok(())
+        bibtex::write(dir, &self.sources)
     }
 }
 

@@ -21,7 +21,13 @@ impl Summary {
         self.report_loads(&mut lines);
         lines.extend(self.bed.flow.iter().flat_map(FlowRecord::report));
         let bed = &self.bed;
-        lines.extend(packing::report(&bed.beds, &bed.growth, &bed.compaction, bed.packing.as_ref()));
+        lines.extend(packing::report(
+            &bed.beds,
+            &bed.growth,
+            (bed.earlier, &bed.compaction),
+            &bed.tamping,
+            bed.packing.as_ref(),
+        ));
         lines.extend(self.bed.runout.iter().flat_map(RunoutRecord::report));
         lines.extend(self.bed.specimen.iter().flat_map(SpecimenRecord::report));
         self.report_stages(&mut lines);

@@ -166,11 +166,16 @@ fn flow_beside_bonds() {
 }
 
 #[test]
-fn outlet_beside_cycle_jumps() {
+fn inlet_beside_cycle_jumps() {
+    let sleeper = "[track.sleeper]\nsize = [0.1, 0.1, 0.1]\nmass = 1\nmaterial = \"stone\"\ncentre = [0.1, 0.1]\n\n[track.jump]\n\n[time]";
+    flow().scene("[time]", sleeper).refused(
+        "scene.toml:15: grains.0.inlet: found together with [track.jump], expected only one of them",
+    );
+    // Outlets trim slopes, so they are accepted.
     let jump = "[[outlet]]\npoint = [9, 0, 0]\nnormal = [1, 0, 0]\n\n[track.jump]\n\n[coupling]";
     coupled()
         .scene("[coupling]", jump)
-        .refused("scene.toml:45: outlet.0: found together with [track.jump], expected only one of them");
+        .refused("scene.toml:49: track.jump.first: found 100, expected fewer than the 2 cycles of the load");
 }
 
 #[test]

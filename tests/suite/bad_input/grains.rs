@@ -314,7 +314,8 @@ fn vibration_without_an_amplitude() {
 #[test]
 fn plate_of_a_vibration() {
     grains_scene().scene("[time]", &VIBRATION.replace("cycles = 5", "cycles = 5\nforce = 100")).refused(
-        "scene.toml:28: compaction.0.force: found, but it has no effect without `kind = \"tamping\"` or `\"bedding\"`",
+        "scene.toml:28: compaction.0.force: found, but it has no effect without `kind = \"tamping\"`, `\"bedding\"` or \
+         `\"stabilizing\"`",
     );
 }
 

@@ -110,6 +110,23 @@ fn override_of_an_absent_entry() {
 }
 
 #[test]
+fn override_that_appends_a_table() {
+    // The list has one table; its own errors follow.
+    solid()
+        .set("solid.material.1={id=2,name=\"rock\"}")
+        .refused("--set: solid.material.1.density: found nothing, expected a value for this key");
+    solid().set("solid.material.2={id=2,name=\"rock\"}").refused(
+        "--set: solid.material.2: found solid.material.2, expected an index below 1, or the name of a table, after `material`",
+    );
+    solid()
+        .set("outlet.0={name=\"a\"}")
+        .refused("--set: outlet: found, but it has no effect without [[grains]]");
+    solid().set("solid.material.1=3").refused(
+        "--set: solid.material.1: found solid.material.1, expected an index below 1, or the name of a table, after `material`",
+    );
+}
+
+#[test]
 fn override_of_an_unknown_key() {
     solid()
         .set("solid.material.0.yung=1")

@@ -3,9 +3,11 @@
 use super::check::{find, region};
 use super::deposition::{DepositionPlan, SETTLED_SPEED, SOFTER};
 use super::groups::GroupsPart;
+use super::tines::{self, TinesPlan};
 use super::walls::{WallsPart, is_plain};
 use crate::scene::compaction::{Compaction, CompactionKind};
 use crate::scene::grains::GrainShape;
+use crate::scene::track::Sleeper;
 use crate::scene::units::vector;
 use crate::scene::walls::WallKind;
 use crate::scene::{Scene, SceneError, Table, kinds};
@@ -85,6 +87,19 @@ pub enum Press {
         /// Longest travel [m].
         max_travel: f64,
     },
+    /// Tines tamp each sleeper.
+    Tines(TinesPlan),
+    /// Sleepers are loaded and shaken across the track.
+    Stabilizing {
+        /// Vertical force per sleeper [N].
+        force: f64,
+        /// Amplitude of the horizontal force per sleeper [N].
+        sway: f64,
+        /// Frequency [Hz].
+        frequency: f64,
+        /// Cycles.
+        cycles: u32,
+    },
 }
 
 impl Press {
@@ -96,7 +111,16 @@ impl Press {
             Press::Squeeze { .. } => "squeeze",
             Press::Bedding { .. } => "bedding",
             Press::Pouring { .. } => "pouring",
+            Press::Tines(_) => "tines",
+            Press::Stabilizing { .. } => "stabilizing",
         }
+    }
+}
+
+impl Press {
+    /// Whether it acts on sleepers, which it sets down if necessary.
+    pub fn needs_sleepers(&self) -> bool {
+        matches!(self, Press::Bedding { .. } | Press::Tines(_) | Press::Stabilizing { .. })
     }
 }
 
@@ -120,6 +144,8 @@ pub(super) fn build(
             CompactionKind::Squeeze => squeeze(scene, &c, walls)?,
             CompactionKind::Bedding => bedding(scene, &c)?,
             CompactionKind::Pouring => pouring(scene, &c, groups)?,
+            CompactionKind::Tines => Press::Tines(tines::build(scene, &c)?),
+            CompactionKind::Stabilizing => stabilizing(scene, &c)?,
         };
         plans.push(CompactionPlan {
             press,
@@ -140,16 +166,19 @@ pub(super) fn build(
 }
 
 fn refuse_idle_keys(c: &Table<Compaction>) -> Result<(), SceneError> {
-    use CompactionKind::{Bedding, Pouring, Squeeze, Tamping, Vibration};
-    let swings: &[CompactionKind] = &[Vibration, Tamping, Bedding];
+    use CompactionKind::{Bedding, Pouring, Squeeze, Stabilizing, Tamping, Tines, Vibration};
+    let swings: &[CompactionKind] = &[Vibration, Tamping, Bedding, Stabilizing];
+    let shaken = &[swings, &[Tines]].concat()[..];
     let keys = [
         ("walls", c.walls.is_some(), &[Vibration][..]),
         ("direction", c.direction.is_some(), &[Vibration]),
         ("amplitude", c.amplitude.is_some(), &[Vibration]),
-        ("frequency", c.frequency.is_some(), swings),
+        ("frequency", c.frequency.is_some(), shaken),
         ("cycles", c.cycles.is_some(), swings),
         ("plate", c.plate.is_some(), &[Tamping]),
-        ("force", c.force.is_some(), &[Tamping, Bedding]),
+        ("force", c.force.is_some(), &[Tamping, Bedding, Stabilizing]),
+        ("sway", c.sway.is_some(), &[Stabilizing]),
+        ("tines", c.tines.is_some(), &[Tines]),
         ("at", c.at.is_some(), &[Tamping]),
         ("wall", c.wall.is_some(), &[Squeeze]),
         ("speed", c.speed.is_some(), &[Squeeze]),
@@ -221,13 +250,35 @@ fn tamping(
 }
 
 fn bedding(scene: &Table<Scene>, c: &Table<Compaction>) -> Result<Press, SceneError> {
-    if scene.track.as_ref().is_none_or(|track| track.sleeper.mesh.is_some()) {
-        return Err(c.error("kind", "\"bedding\"", "rigid sleepers ([track.sleeper]), which it beds"));
-    }
+    rigid_sleepers(scene, c)?;
     let (frequency, cycles) = swing(c)?;
     let force = c.need("force", c.force, "the largest force on a sleeper")?.si;
     c.check("force", force, |f| f > 0.0, "above 0")?;
     Ok(Press::Bedding { force, frequency, cycles })
+}
+
+fn stabilizing(scene: &Table<Scene>, c: &Table<Compaction>) -> Result<Press, SceneError> {
+    rigid_sleepers(scene, c)?;
+    let (frequency, cycles) = swing(c)?;
+    let force = c.need("force", c.force, "the vertical force on a sleeper")?.si;
+    c.check("force", force, |f| f > 0.0, "above 0")?;
+    let sway = c.need("sway", c.sway, "the amplitude of the horizontal force on a sleeper")?.si;
+    c.check("sway", sway, |f| f > 0.0, "above 0")?;
+    Ok(Press::Stabilizing { force, sway, frequency, cycles })
+}
+
+/// Returns the sleepers, which a stage acts on.
+pub(super) fn rigid_sleepers<'s>(
+    scene: &'s Table<Scene>,
+    c: &Table<Compaction>,
+) -> Result<&'s Sleeper, SceneError> {
+    match &scene.track {
+        Some(track) if track.sleeper.mesh.is_none() => Ok(&track.sleeper),
+        _ => {
+            let kind = c.kind.name();
+            Err(c.error("kind", format!("\"{kind}\""), "rigid sleepers ([track.sleeper])"))
+        }
+    }
 }
 
 fn pouring(

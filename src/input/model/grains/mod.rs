@@ -25,6 +25,7 @@ mod specimen;
 mod spread;
 mod steps;
 mod structures;
+mod tines;
 mod track;
 mod walls;
 mod water;
@@ -54,6 +55,7 @@ pub use refused::refused;
 pub use runout::{MOST_CELLS, RunoutPlan};
 pub use specimen::{EventPlan, Platen, SpecimenPlan};
 pub use structures::StructurePlan;
+pub use tines::TinesPlan;
 pub use walls::is_plain;
 pub use water::of_scene as water_of;
 

@@ -4,6 +4,7 @@ use super::compaction::{CompactionPlan, Press};
 use super::footprint::Footprint;
 use super::part::GrainsPart;
 use super::refused::refused;
+use super::tines::TinesPlan;
 use crate::scene::{Document, SceneError};
 use trackbed_dem::{BodyInput, Model, ModelError, ModelInput, Vec3};
 
@@ -13,6 +14,9 @@ use trackbed_dem::{BodyInput, Model, ModelError, ModelInput, Vec3};
 /// First plate.
 pub fn check_plates(document: &Document, grains: &GrainsPart) -> Result<(), SceneError> {
     for (k, plan) in grains.packing.compaction.iter().enumerate() {
+        if let Press::Tines(tines) = &plan.press {
+            blades(document, grains, k, tines)?;
+        }
         let Press::Tamping { plate, half, at, .. } = &plan.press else { continue };
         for centre in at {
             let plan = Footprint { centre: *centre, half: [half[0], half[1]], bottom: f64::NEG_INFINITY };
@@ -22,6 +26,36 @@ pub fn check_plates(document: &Document, grains: &GrainsPart) -> Result<(), Scen
             }
         }
         stiffness(document, grains, (k, plan), plate)?;
+    }
+    Ok(())
+}
+
+/// Blades at their widest, before they close.
+fn blades(document: &Document, grains: &GrainsPart, k: usize, tines: &TinesPlan) -> Result<(), SceneError> {
+    let Some(sleeper) = &grains.track.sleeper else { return Ok(()) };
+    let [a, b, _] = tines.reach();
+    for centre in &sleeper.row.centres {
+        for (across, side) in tines.at.iter().flat_map(|x| [(x, 1.0), (x, -1.0)]) {
+            let mut at = *centre;
+            at[1 - tines.axis] += across;
+            at[tines.axis] += side * tines.distance(sleeper.row.half[tines.axis]);
+            let blade = Footprint { centre: at, half: [a, b], bottom: f64::NEG_INFINITY };
+            let reach = tines.reach()[tines.axis];
+            let meets =
+                |c: &[f64; 2]| (c[tines.axis] - at[tines.axis]).abs() < sleeper.row.half[tines.axis] + reach;
+            let beyond =
+                |[low, high]: [f64; 2]| at[tines.axis] - reach < low || at[tines.axis] + reach > high;
+            let found = match sleeper.row.centres.iter().position(meets) {
+                Some(k) => Some(format!("through sleeper {}", k + 1)),
+                None if grains.periodic[tines.axis].is_some_and(beyond) => Some("beyond a border".into()),
+                None => through(grains, &blade),
+            };
+            if let Some(found) = found {
+                let found = format!("a blade at ({}, {}) m {found}", at[0], at[1]);
+                let key = format!("compaction.{k}.tines.gap");
+                return Err(document.error(&key, found, "blades between walls and sleepers"));
+            }
+        }
     }
     Ok(())
 }

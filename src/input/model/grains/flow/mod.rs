@@ -47,7 +47,7 @@ pub(super) fn build(
     }
     for (present, with) in [
         (!scene.bond.is_empty(), "[[bond]]"),
-        (scene.track.as_ref().is_some_and(|t| t.jump.is_some()), "[track.jump]"),
+        (!inlets.is_empty() && scene.track.as_ref().is_some_and(|t| t.jump.is_some()), "[track.jump]"),
     ] {
         if present {
             let first = scene.rows("grains", &scene.grains).find(|g| g.inlet.is_some());
