@@ -58,17 +58,18 @@ impl<'a> Life<'a> {
         self.periods.iter().filter(|p| p.period == period + 1).collect()
     }
 
-    /// Level of each packing at the start of a period [m].
-    fn starts(&self, period: usize) -> Vec<f64> {
-        let level = |packing: usize| {
-            let settled = self.periods.iter().filter(|p| p.packing == packing && p.period <= period);
+    /// Level of each packing at the start of a period, and the error of its earlier jumps [m].
+    fn starts(&self, period: usize) -> Vec<[f64; 2]> {
+        let start = |packing: usize| {
+            let settled = || self.periods.iter().filter(move |p| p.packing == packing && p.period <= period);
             let raised = self.tampings.iter().filter(|t| t.packing == packing && t.tamping <= period);
             let next = self.periods.iter().find(|p| p.packing == packing && p.period == period + 1);
-            next.map_or(0.0, |p| p.before_cycles)
-                + settled.map(|p| p.before_cycles + p.settlement).sum::<f64>()
-                - raised.map(|t| t.raised).sum::<f64>()
+            let level = next.map_or(0.0, |p| p.before_cycles)
+                + settled().map(|p| p.before_cycles + p.settlement).sum::<f64>()
+                - raised.map(|t| t.raised).sum::<f64>();
+            [level, settled().map(|p| p.jump_error).sum()]
         };
-        (1..=self.plan.packings.len()).map(level).collect()
+        (1..=self.plan.packings.len()).map(start).collect()
     }
 
     fn points(&self) -> Vec<Point> {
@@ -79,7 +80,8 @@ impl<'a> Life<'a> {
             for cycle in decades(f64::from(*cycles)) {
                 let values: Vec<[f64; 2]> = all.iter().map(|p| at(p, cycle)).collect();
                 let settlement = band(values.iter().copied());
-                let level = band(values.iter().zip(&starts).map(|([s, e], start)| [start + s, *e]));
+                let level =
+                    band(values.iter().zip(&starts).map(|([s, e], [level, error])| [level + s, error + e]));
                 let traffic = begun + cycle / self.plan.cycles_per_mgt;
                 points.push(Point { traffic, period, cycle, settlement, level });
             }

@@ -63,6 +63,12 @@ fn a_small_life_adds_up() {
     let last = life_json["curve"].as_array().unwrap().last().unwrap()["level"][0].as_f64().unwrap();
     let mean = 0.5 * (level(1) + level(2));
     assert!((last - mean).abs() < 1e-12, "{last}, not {mean}");
+    // The band has the errors of both periods.
+    let ends = [1, 2].map(|p| [level(p), settled(p, "jump_error")]);
+    let [low, high] =
+        [1, 2].map(|k| life_json["curve"].as_array().unwrap().last().unwrap()["level"][k].as_f64().unwrap());
+    let expected = ends.iter().map(|[s, e]| s - e).fold(f64::INFINITY, f64::min);
+    assert!((low - expected).abs() < 1e-12 && high - low > ends[0][1], "{low} {high}, not {expected}");
     let csv = Table::read(&out.join("life.csv"));
     assert!((csv.column("level").last().unwrap() - last).abs() < 1e-15);
     assert!((csv.column("traffic").last().unwrap() - 1e-3).abs() < 0.5 / cycles);
