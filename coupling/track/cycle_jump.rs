@@ -249,6 +249,7 @@ impl CycleJumper {
         let Some(fit) = settlement::slope(&cycles.measured, WINDOW * age).filter(|f| f.slope > 0.0) else {
             return false;
         };
+        // A tenth of the cycles also after displacements: it checks the last one.
         let reserve = plan.settle + plan.measure.max((STRETCH * f64::from(cycles.simulated())) as u32);
         let room = (cycles.total() - cycles.number()).saturating_sub(reserve);
         if room == 0 {

@@ -61,15 +61,15 @@ pub fn execute(
     if let Some(set) = plan.pushed(0, last) {
         check(&plan.scene, &set).map_err(|e| of("push", e))?;
     }
-    let dir = options.out.clone().unwrap_or_else(|| default_folder(file, &[]));
-    let _lock = Lock::take(&dir)?;
-    if options.force {
-        clear(&dir)?;
-    }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = options.threads.unwrap_or_else(|| (cores / plan.packings.len()).max(1));
     if threads == 0 {
         return Err(Failure::Input("--threads: found 0, expected at least 1".into()));
+    }
+    let dir = options.out.clone().unwrap_or_else(|| default_folder(file, &[]));
+    let _lock = Lock::take(&dir)?;
+    if options.force {
+        clear(&dir)?;
     }
     options.interrupt.end_at_once(false);
     let verbosity = if options.quiet { Verbosity::Quiet } else { Verbosity::Normal };

@@ -25,6 +25,9 @@ pub struct Period {
     pub before_cycles: f64,
     /// Settlement after the cycles before the first jump [m].
     pub before_jumps: Option<f64>,
+    /// Cycles before the first jump.
+    #[serde(skip)]
+    pub first: Option<f64>,
     /// Estimated error of cycle jumps [m].
     pub jump_error: f64,
     /// Jumps delayed by changes.
@@ -128,6 +131,7 @@ pub fn period(
         settlement: last[1],
         before_cycles: earlier - heights(&run, Some(start))?,
         before_jumps: first.and_then(at),
+        first,
         jump_error: run.number("settlement.jump.error_estimate").unwrap_or(0.0),
         delays: run.list("settlement.jump.delays").len(),
         bed_stiffness: stiffness.and_then(|s| s.last().map(|p| p[1])).unwrap_or(0.0),

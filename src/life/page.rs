@@ -323,8 +323,7 @@ fn at(period: &Period, cycle: f64) -> [f64; 2] {
         (Some(a), None) => a[1],
         (None, None) => 0.0,
     };
-    let first = period.before_jumps.map(|s| rows.iter().find(|row| row[1] >= s).map_or(0.0, |row| row[0]));
-    let share = match (first, rows.last()) {
+    let share = match (period.first, rows.last()) {
         (Some(first), Some(last)) if cycle > first && last[0] > first => {
             libm::log(cycle / first) / libm::log(last[0] / first)
         }
@@ -367,6 +366,7 @@ mod tests {
             settlement: 4e-3,
             before_cycles: 0.0,
             before_jumps: Some(2e-3),
+            first: Some(10.0),
             jump_error: 1e-4,
             delays: 0,
             bed_stiffness: 0.0,

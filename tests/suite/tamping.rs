@@ -215,3 +215,16 @@ fn a_held_sleeper_is_freed_by_the_next_run() {
     let x = Table::read(&pushed.join("history.csv")).column("sleeper_x");
     assert!(x.last().unwrap() - x[0] > 1e-3, "{} {}", x[0], x[x.len() - 1]);
 }
+
+/// A group in prescribed motion stands still while the bed is packed.
+#[test]
+fn prescribed_grains_do_not_fall_during_compaction() {
+    let held = "[[grains]]\nname = \"held\"\nshape = \"sphere\"\nmaterial = \"stone\"\nspheres = [[0.4, 0.4, 0.5, 0.03]]\n\
+        prescribed_velocity = [0, 0, 0]\n\n[[probe]]\nname = \"held\"\ngrain = 1\n\n[[walls]]";
+    let text =
+        PRESSED.replace("gravity = [0, 0, 0]", "gravity = [0, 0, -9.81]").replacen("[[walls]]", held, 1);
+    let folder = scene_folder("gripped", &text);
+    let out = folder.join("out");
+    run(&folder.join("scene.toml"), &out, &[]).good();
+    assert_eq!(Table::read(&out.join("history.csv")).column("held_z")[0], 0.5);
+}

@@ -113,7 +113,7 @@ fn left(
     let expected = |name: &str, seconds| StageTime { name: name.into(), seconds, known: Known::Expected };
     let unknown = |name: String, seconds| StageTime { name, seconds, known: Known::Unknown };
     if let Some((time, pace)) = rehearsed.reached {
-        return Ok(vec![expected(RUN, rehearsed.seconds + pace * (job.end - time))]);
+        return Ok(vec![expected(RUN, rehearsed.seconds + pace * (simulated(job) - time).max(0.0))]);
     }
     let Some(grains) = &job.grains else {
         let name = match job.solid.as_ref().map(|s| &s.analysis) {

@@ -105,19 +105,18 @@ pub enum Press {
 impl Press {
     /// Returns the scene name of the type.
     pub fn name(&self) -> &'static str {
-        match self {
-            Press::Vibration { .. } => "vibration",
-            Press::Tamping { .. } => "tamping",
-            Press::Squeeze { .. } => "squeeze",
-            Press::Bedding { .. } => "bedding",
-            Press::Pouring { .. } => "pouring",
-            Press::Tines(_) => "tines",
-            Press::Stabilizing { .. } => "stabilizing",
-        }
+        let kind = match self {
+            Press::Vibration { .. } => CompactionKind::Vibration,
+            Press::Tamping { .. } => CompactionKind::Tamping,
+            Press::Squeeze { .. } => CompactionKind::Squeeze,
+            Press::Bedding { .. } => CompactionKind::Bedding,
+            Press::Pouring { .. } => CompactionKind::Pouring,
+            Press::Tines(_) => CompactionKind::Tines,
+            Press::Stabilizing { .. } => CompactionKind::Stabilizing,
+        };
+        kind.name()
     }
-}
 
-impl Press {
     /// Whether it acts on sleepers, which it sets down if necessary.
     pub fn needs_sleepers(&self) -> bool {
         matches!(self, Press::Bedding { .. } | Press::Tines(_) | Press::Stabilizing { .. })

@@ -6,9 +6,9 @@ use crate::scene::compaction::Compaction;
 use crate::scene::units::vector;
 use crate::scene::{Scene, SceneError, Table};
 
-/// Default speed of lift and insertion [m/s].
+/// Default speed of insertion [m/s].
 const INSERTION: f64 = 1.0;
-/// Default closing speed [m/s].
+/// Default speed of lift and of closing [m/s].
 const SQUEEZE: f64 = 0.1;
 /// Default time closed [s].
 const HOLD: f64 = 0.1;
