@@ -320,8 +320,15 @@ fn describe(run: &Run<'_>, summary: &mut Summary) -> Result<(), Failure> {
         summary.solid.libraries = LibraryRecord::of(solid);
     }
     if let Some(part) = &run.job.grains {
+        let compiled = part.materials.own_law.map(|law| (law, law.compile()));
         if run.verbosity > Verbosity::Quiet {
             part.materials.law_lines.iter().for_each(|line| message::note(line));
+            if let Some((law, compiled)) = &compiled {
+                message::note(&match compiled {
+                    Ok(compiler) => format!("contact law \"{}\" compiled by {compiler}", law.name()),
+                    Err(why) => format!("contact law \"{}\" interpreted, slower: {why}", law.name()),
+                });
+            }
         }
         summary.warnings.extend(part.groups.remarks.iter().cloned());
         summary.sources.extend(part.materials.sources());

@@ -2,6 +2,7 @@
 
 use super::support::{Folder, Outcome, Table, repository, run, trackbed};
 use std::fs;
+use std::process::Command;
 
 #[test]
 fn viscoelastic_spheres_lose_speed_as_the_series() {
@@ -78,16 +79,26 @@ fn shipped_laws_as_formulas_give_the_same_bed() {
         ("hertz", HERTZ, "young = 1e7\npoisson = 0.2", "hertz"),
         ("walton", WALTON_BRAUN, "stiffness = 1e5", "walton_braun"),
     ] {
-        let ran = |law: &str, normal: &str, threads: &str| {
+        let ran = |law: &str, normal: &str, compiler: &str| {
             let keys = format!("{material}\nnormal = \"{normal}\"");
             let damped = if shipped == "walton_braun" { "tangential_damping_ratio = 0.3\n" } else { "" };
             let text = BED.replace("MATERIAL", &keys).replace(damped, "") + law;
-            let out = folder.join(&format!("{name}-{normal}-{threads}"));
-            run(&folder.write("scene.toml", &text), &out, &[]).good();
-            fs::read(out.join("packing.csv")).unwrap()
+            let out = folder.join(&format!("{name}-{normal}-{compiler}"));
+            let mut command = Command::new(env!("CARGO_BIN_EXE_trackbed"));
+            command.arg("run").arg(folder.write("scene.toml", &text)).arg("--out").arg(&out);
+            let done = command.args(["--threads", "1"]).env("CC", compiler).output().unwrap();
+            assert!(done.status.success());
+            (fs::read(out.join("packing.csv")).unwrap(), String::from_utf8(done.stderr).unwrap())
         };
-        let own = ran(law, "own", "1");
-        assert!(own.len() > 10_000 && own == ran("", shipped, "1"), "{name}");
+        let (bed, notes) = ran("", shipped, "");
+        assert!(bed.len() > 10_000 && !notes.contains("contact law"), "{name}: {notes}");
+        for (compiler, expected) in [
+            ("", "contact law \"own\" compiled by cc"),
+            ("no-such-compiler", "contact law \"own\" interpreted, slower: no-such-compiler: "),
+        ] {
+            let (own, notes) = ran(law, "own", compiler);
+            assert!(own == bed && notes.contains(expected), "{name}: {notes}");
+        }
     }
 }
 

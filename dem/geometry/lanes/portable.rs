@@ -73,6 +73,7 @@ impl Portable {
 
 impl Real for Portable {
     type Mask = PortableMask;
+    const NUMBERS: usize = 4;
 
     /// Serves processors before AVX2 there.
     const CALLS: bool = cfg!(all(target_arch = "x86_64", not(feature = "portable")));

@@ -12,6 +12,9 @@ pub trait Real:
     /// Whether operations are recorded instead of computed, for GPU kernels.
     const RECORDS: bool = false;
 
+    /// Numbers that the type consists of, in memory; 0: others.
+    const NUMBERS: usize = 0;
+
     /// Whether large formulas are called instead of inlined: smaller code where speed matters little.
     const CALLS: bool = false;
 
@@ -59,6 +62,7 @@ pub trait Real:
 
 impl Real for f64 {
     type Mask = bool;
+    const NUMBERS: usize = 1;
 
     #[inline(always)]
     fn splat(x: f64) -> f64 {

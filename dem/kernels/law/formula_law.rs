@@ -147,7 +147,7 @@ impl<const KIND: u8> NormalLaw for FormulaLaw<KIND> {
         let mut values = law.values(overlap, [before, largest], touch.radius);
         values[Variable::InverseMass as usize] = touch.inverse_mass;
         values[Variable::Step as usize] = touch.step;
-        let [force, other] = results(law.formula.map(|f| &f.step), &values);
+        let [force, other] = law.formula.map_or([R::zero(); 2], |f| f.stepped(&values));
         let circle = (touch.radius * overlap).sqrt();
         let before = if KIND == MODULUS { (touch.radius * touch.overlap_before()).sqrt() } else { circle };
         Response {

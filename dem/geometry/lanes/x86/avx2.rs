@@ -59,6 +59,7 @@ impl Not for Avx2Mask {
 
 impl Real for Avx2 {
     type Mask = Avx2Mask;
+    const NUMBERS: usize = 4;
 
     #[inline(always)]
     fn splat(x: f64) -> Avx2 {

@@ -64,6 +64,7 @@ impl Not for Avx512Mask {
 
 impl Real for Avx512 {
     type Mask = Avx512Mask;
+    const NUMBERS: usize = 8;
 
     #[inline(always)]
     fn splat(x: f64) -> Avx512 {

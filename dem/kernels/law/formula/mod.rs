@@ -5,9 +5,11 @@
 //!
 //! Theory manual: section 1.12, `docs/theory/contacts.md`.
 
+mod compiled;
 mod parse;
 mod program;
 
+pub use compiled::NotCompiled;
 pub use parse::{FormulaError, is_free_name};
 pub(super) use program::{Program, VARIABLES, Values, Variable};
 
@@ -46,6 +48,7 @@ pub struct Formula {
     pub(super) step: Program,
     pub(super) energy: Option<Program>,
     pub(super) is_damped: bool,
+    compiled: compiled::Compiled,
 }
 
 /// Mistake in one of [`Texts`].
@@ -143,7 +146,15 @@ impl Formula {
             _ => {}
         }
         let is_damped = texts.damping.is_some();
-        Ok(Formula { name: name.to_string(), kind, force, step, energy, is_damped })
+        Ok(Formula {
+            name: name.to_string(),
+            kind,
+            force,
+            step,
+            energy,
+            is_damped,
+            compiled: Default::default(),
+        })
     }
 
     /// Keeps the formula for the life of the process; equal ones once.

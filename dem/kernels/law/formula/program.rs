@@ -158,6 +158,37 @@ impl Program {
         results
     }
 
+    /// Statements in C: variable v of lane l is `v[v*width + l]`, results likewise.
+    pub(super) fn in_c(&self, text: &mut String, width: usize, results: usize) {
+        use Operation::*;
+        let number = |x: f64| match x {
+            _ if x.is_nan() => "(0.0/0.0)".to_string(),
+            _ if x.is_infinite() => format!("({}1.0/0.0)", if x > 0.0 { "" } else { "-" }),
+            _ => format!("({x:e})"),
+        };
+        for (k, operation) in self.operations.iter().enumerate() {
+            let value = match *operation {
+                Constant(x) => number(x),
+                Variable(x) => format!("v[{} + l]", x as usize * width),
+                Negate(a) => format!("-x{a}"),
+                Sqrt(a) => format!("__builtin_sqrt(x{a})"),
+                Abs(a) => format!("__builtin_fabs(x{a})"),
+                Add(a, b) => format!("x{a} + x{b}"),
+                Subtract(a, b) => format!("x{a} - x{b}"),
+                Multiply(a, b) => format!("x{a} * x{b}"),
+                Divide(a, b) => format!("x{a} / x{b}"),
+                Min(a, b) => format!("x{a} < x{b} ? x{a} : x{b}"),
+                Max(a, b) => format!("x{a} > x{b} ? x{a} : x{b}"),
+                Below(a, b, yes, no) => format!("x{a} < x{b} ? x{yes} : x{no}"),
+            };
+            text.push_str(&format!("const double x{k} = {value};\n"));
+        }
+        for k in 0..results {
+            let value = self.results.get(k).map_or("0.0".to_string(), |r| format!("x{r}"));
+            text.push_str(&format!("r[{} + l] = {value};\n", k * width));
+        }
+    }
+
     /// First value, and its derivative along `rates` of the variables.
     pub fn derivative(&self, values: &Values<f64>, rates: &Values<f64>) -> (f64, f64) {
         use Operation::*;

@@ -26,6 +26,8 @@ pub struct MaterialsPart {
     pub of_grains: Vec<usize>,
     /// Checks of an own law, for `check`.
     pub law_lines: Vec<String>,
+    /// Own contact law.
+    pub own_law: Option<&'static Formula>,
     pub(super) names: Vec<String>,
     /// Stiffness over the mean, by material; 1 beyond its end.
     pub(super) factors: Vec<f64>,
@@ -74,7 +76,15 @@ pub(super) fn build(scene: &Table<Scene>) -> Result<MaterialsPart, SceneError> {
     laws::check_laws(scene, &all, &pairs)?;
     let law_lines = own_law::checked(scene, own, (&all, &pairs))?;
     let names = scene.material.iter().map(|m| m.name.clone()).collect();
-    Ok(MaterialsPart { all, pairs, of_grains: Vec::new(), law_lines, names, factors: Vec::new() })
+    Ok(MaterialsPart {
+        all,
+        pairs,
+        of_grains: Vec::new(),
+        law_lines,
+        own_law: own,
+        names,
+        factors: Vec::new(),
+    })
 }
 
 fn materials(scene: &Table<Scene>, own: Option<&'static Formula>) -> Result<Vec<Material>, SceneError> {
