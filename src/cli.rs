@@ -206,6 +206,12 @@ pub struct VerifyArgs {
     /// Compute the rows with other programs too; missing ones are skipped.
     #[arg(long)]
     pub peers: bool,
+    /// Compute the rows on a CUDA device too; without one they are skipped.
+    #[arg(long)]
+    pub gpu: bool,
+    /// Compute the rows on several ranks too; needs mpirun and the feature `mpi`.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=64))]
+    pub ranks: Option<u32>,
     /// Only these rows or groups.
     #[arg(long, value_name = "NAME", num_args = 1..)]
     pub only: Vec<String>,

@@ -3,8 +3,8 @@
 //! Rounds of a simulated *stretch*, comparison with the predicted slope b = ds/d(ln N), and a jump. Relative
 //! to N it doubles if the last error is within the tolerance, else halves.
 //!
-//! * `extrapolate`: grains stay; settlement is the measured one plus b ln(N/n), n the age of the bed. Error:
-//!   ln(N/n) times two standard errors of b plus the error of earlier predictions.
+//! * `extrapolate`: grains stay; settlement is the measured one plus b ln(N/n), n the age of the bed. Error: by
+//!   forecasts of the simulated cycles (`extrapolation`).
 //! * `displace`: bodies are displaced along their drift, limited by the change of overlaps; recovery cycles
 //!   do not count. Errors after each stretch are summed.
 //!
@@ -13,7 +13,7 @@
 
 use super::change::{self, Change};
 use super::cycles::CycleRecorder;
-use super::settlement;
+use super::extrapolation::{self, Forecast, WINDOW};
 use super::system::TrackSystem;
 use nalgebra::UnitQuaternion;
 use serde::{Deserialize, Serialize};
@@ -26,8 +26,6 @@ use trackbed_dem::integrate::rotation;
 const START: f64 = 0.25;
 /// Smallest stretch of `extrapolate` over simulated cycles.
 const STRETCH: f64 = 0.1;
-/// First cycle of the slope over the last.
-const WINDOW: f64 = 0.25;
 
 /// Parameters of cycle jumps.
 #[derive(Clone, Copy, Debug)]
@@ -113,6 +111,9 @@ pub struct JumpSummary {
     pub energy: f64,
     /// Jumps.
     pub jumps: Vec<JumpRecord>,
+    /// Forecasts of the last simulated cycle from earlier ones; `extrapolate` only.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub forecasts: Vec<Forecast>,
     /// Jumps that a change delayed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub delays: Vec<DelayRecord>,
@@ -246,7 +247,7 @@ impl CycleJumper {
     ) -> bool {
         let [age, settlement] = cycles.latest;
         let number = f64::from(cycles.number());
-        let Some(fit) = settlement::slope(&cycles.measured, WINDOW * age).filter(|f| f.slope > 0.0) else {
+        let Some(fit) = extrapolation::slope(&cycles.measured).filter(|f| f.slope > 0.0) else {
             return false;
         };
         // A tenth of the cycles also after displacements: it checks the last one.
@@ -298,7 +299,7 @@ impl CycleJumper {
         let mut error = 0.0;
         if !plan.grains {
             let beyond = libm::log((number + f64::from(skipped)) / age);
-            error = (2.0 * fit.error + self.slope_error()) * beyond;
+            error = extrapolation::error(&cycles.measured, &fit, beyond);
             cycles.jump_error = error;
         }
         cycles.skip(skipped, if plan.grains { 0.0 } else { fit.slope });
@@ -317,13 +318,6 @@ impl CycleJumper {
         plan.grains
     }
 
-    /// Standard error of the slope from earlier predictions [m].
-    fn slope_error(&self) -> f64 {
-        let miss = |j: &JumpRecord| j.measured_slope.map(|m| (m - j.predicted_slope).powi(2));
-        let misses: Vec<f64> = self.jumps.iter().filter_map(miss).collect();
-        misses.iter().sum::<f64>().sqrt() / misses.len().max(1) as f64
-    }
-
     /// Summary.
     pub fn summary(&self, plan: &CycleJumpOptions, cycles: &CycleRecorder, energy: f64) -> JumpSummary {
         let settlement = cycles.done.last().map_or(0.0, |c| c.settlement);
@@ -339,6 +333,7 @@ impl CycleJumper {
             },
             energy,
             jumps: self.jumps.clone(),
+            forecasts: if plan.grains { Vec::new() } else { extrapolation::forecasts(&cycles.measured) },
             delays: self.delays.clone(),
         }
     }

@@ -7,6 +7,7 @@ pub mod beam;
 mod change;
 pub mod cycle_jump;
 pub mod cycles;
+pub mod extrapolation;
 pub mod extremes;
 pub mod influence;
 pub mod irregularity;

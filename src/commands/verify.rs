@@ -2,7 +2,7 @@
 
 use super::output;
 use crate::cli::VerifyArgs;
-use crate::verify::{self, Finished};
+use crate::verify::{self, Finished, Place};
 use trackbed_io::failure::Failure;
 use trackbed_io::message;
 
@@ -11,7 +11,9 @@ use trackbed_io::message;
 /// # Errors
 /// Input and I/O errors, own rows beyond their tolerance.
 pub fn verify(args: VerifyArgs) -> Result<(), Failure> {
+    let places = args.gpu.then_some(Place::Gpu).into_iter().chain(args.ranks.map(Place::Ranks)).collect();
     let options = verify::Options {
+        places,
         matrix: args.matrix,
         out: args.out,
         only: args.only,

@@ -64,6 +64,8 @@ pub struct Column {
     pub name: String,
     /// Name in tables.
     pub title: String,
+    /// This program.
+    pub own: bool,
     /// Version; none if not available.
     pub version: Option<String>,
     /// Reason why it is not available.

@@ -32,22 +32,24 @@ impl Matrix {
         self.columns.iter().map(move |column| &column.cells[k])
     }
 
-    /// Returns the own rows that fail.
+    /// Returns the own columns, the CPU first.
+    pub fn own(&self) -> impl Iterator<Item = &Column> {
+        self.columns.iter().filter(|column| column.own)
+    }
+
+    /// Returns the own rows that fail, or have no value on the CPU.
     pub fn failed(&self) -> Vec<&Row> {
-        let own = &self.columns[0].cells;
-        self.plan
-            .rows
-            .iter()
-            .zip(own)
-            .filter(|(_, cell)| cell.passed() != Some(true))
-            .map(|(r, _)| r)
-            .collect()
+        let fails = |k: usize| {
+            let mut states = self.own().map(|column| column.cells[k].passed());
+            states.next() != Some(Some(true)) || states.any(|state| state == Some(false))
+        };
+        self.plan.rows.iter().enumerate().filter(|(k, _)| fails(*k)).map(|(_, row)| row).collect()
     }
 
     /// Returns the differences of the other programs above the tolerance.
     pub fn differences(&self) -> Vec<Difference<'_>> {
         let mut all = Vec::new();
-        for column in &self.columns[1..] {
+        for column in self.columns.iter().filter(|column| !column.own) {
             for (row, cell) in self.plan.rows.iter().zip(&column.cells) {
                 if cell.passed() == Some(false) {
                     let explanation = row.table.explained.get(&column.name).map(String::as_str);

@@ -14,6 +14,7 @@ mod text;
 
 use file::MatrixFile;
 use matrix::Matrix;
+pub use ours::Place;
 use plan::Plan;
 use std::path::{Path, PathBuf};
 use trackbed_input::scene::Document;
@@ -31,6 +32,8 @@ pub struct Options {
     pub out: PathBuf,
     /// Names of rows or groups; all if empty.
     pub only: Vec<String>,
+    /// Where rows are computed besides the CPU.
+    pub places: Vec<Place>,
     /// Python interpreter of the other programs; none: without them.
     pub python: Option<PathBuf>,
     /// Page whose tables are renewed.
@@ -58,7 +61,11 @@ pub fn execute(options: &Options) -> Result<Finished, Failure> {
     plan.keep(&options.only)?;
     let dir = &options.out;
     let _lock = Lock::take(dir)?;
-    let mut columns = vec![ours::column(&plan.rows, &dir.join("runs"), options.quiet)?];
+    let mut columns = vec![ours::column(&plan.rows, Place::Cpu, &dir.join("runs"), options.quiet)?];
+    for (k, place) in options.places.iter().enumerate() {
+        let folder = dir.join(format!("runs-{}", k + 2));
+        columns.push(ours::column(&plan.rows, *place, &folder, options.quiet)?);
+    }
     let python = options.python.as_deref();
     columns.extend(
         plan.peers.iter().map(|peer| peers::column(peer, (&options.matrix, &plan.rows), python, dir)),

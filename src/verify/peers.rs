@@ -44,7 +44,7 @@ pub fn column(peer: &Peer, (matrix, rows): (&Path, &[Row]), python: Option<&Path
     };
     let cells = rows.iter().map(cell).collect();
     let version = found["version"].as_str().map(String::from);
-    Column { name: name.clone(), title: peer.table.title.clone(), version, missing, cells }
+    Column { name: name.clone(), title: peer.table.title.clone(), own: false, version, missing, cells }
 }
 
 fn of(row: &Row, found: &Value) -> Cell {

@@ -87,14 +87,18 @@ fn program(column: &Column) -> String {
 
 /// Formats the own failures, and the differences above tolerance by program and explanation.
 fn differences(matrix: &Matrix) -> Vec<String> {
-    let own = matrix.plan.rows.iter().zip(&matrix.columns[0].cells);
-    let failed = own.filter_map(|(row, cell)| match cell {
-        Cell::Failed { reason } => Some(format!("trackbed: `{}` failed: {reason}", row.table.name)),
-        cell if cell.passed() == Some(false) => {
-            Some(format!("trackbed: `{}` {}", row.table.name, shown(row, cell, "", "")))
-        }
-        _ => None,
-    });
+    let cells = |column: &Column| -> Vec<String> {
+        let title = &column.title;
+        let line = |(row, cell): (&Row, &Cell)| match cell {
+            Cell::Failed { reason } => Some(format!("{title}: `{}` failed: {reason}", row.table.name)),
+            cell if cell.passed() == Some(false) => {
+                Some(format!("{title}: `{}` {}", row.table.name, shown(row, cell, "", "")))
+            }
+            _ => None,
+        };
+        matrix.plan.rows.iter().zip(&column.cells).filter_map(line).collect()
+    };
+    let failed = matrix.own().flat_map(cells);
     let mut lines: Vec<String> = failed.collect();
     let all = matrix.differences();
     let same = |a: &Difference<'_>, b: &Difference<'_>| {

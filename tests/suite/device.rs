@@ -133,6 +133,36 @@ fn coupled_stand_in_matches_cpu_bitwise() {
 }
 
 #[test]
+fn verification_has_columns_of_device_and_ranks() {
+    let folder = Folder::new("device_verify");
+    let verified = |libraries: &Path, name: &str| {
+        let (matrix, out) = (repository().join("inputs/verify/matrix.toml"), folder.join(name));
+        let [file, to] = [&matrix, &out].map(|path| path.display().to_string());
+        let rows = ["--only", "oxide-restitution", "thick-cylinder"];
+        let arguments =
+            [&["verify", "--gpu", "--ranks", "2", "--quiet", "--matrix", &file, "--out", &to][..], &rows]
+                .concat();
+        with_libraries(libraries, &[], &arguments).good();
+        let text = fs::read_to_string(out.join("verify.json")).unwrap();
+        serde_json::from_str::<serde_json::Value>(&text).unwrap()
+    };
+    let absent = verified(folder.path(), "without");
+    if absent["rows"][0]["cells"]["trackbed_gpu"]["state"] == "skipped" {
+        let missing = absent["programs"][1]["missing"].as_str().unwrap();
+        assert!(missing.contains("not found"), "{missing}");
+    }
+    if cfg!(not(feature = "mpi")) {
+        assert_eq!(absent["programs"][2]["missing"], "built without the feature `mpi`");
+    }
+    let Some(libraries) = stand_in() else { return };
+    let found = verified(libraries.path(), "with");
+    let cells = |k: usize, name: &str| found["rows"][k]["cells"][name].clone();
+    assert_eq!(cells(0, "trackbed_gpu")["value"], cells(0, "trackbed")["value"]);
+    assert!(cells(0, "trackbed_gpu")["value"].is_f64(), "{found}");
+    assert_eq!(cells(1, "trackbed_gpu")["state"], "not_modelled");
+}
+
+#[test]
 fn a_device_that_fails_is_named() {
     let Some(libraries) = stand_in() else { return };
     let folder = scene_folder("device_fails", GRAINS);

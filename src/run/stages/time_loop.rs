@@ -19,7 +19,8 @@ use crate::summary::{
 use crate::system::System;
 use crate::track_output;
 use crate::validity::{
-    Check, Fall, applied_loads, bond_rotation, free_sleeper, load_error, scaled_inertia, stiffness_drift,
+    Check, Fall, applied_loads, bond_rotation, free_sleeper, jump_error, load_error, scaled_inertia,
+    stiffness_drift,
 };
 use serde::{Deserialize, Serialize};
 use trackbed_dem as dem;
@@ -411,7 +412,7 @@ fn energy(recorder: &Results<'_>) -> EnergyRecord {
     }
 }
 
-/// Cyclic stiffness, kinetic energy with mass scaling, bond rotation.
+/// Cyclic stiffness, cycle jumps, kinetic energy with mass scaling, bond rotation.
 fn validity_of<S: System>(system: &S, grains: Option<&GrainsPart>, recorder: &Results<'_>) -> Vec<Check> {
     let secants: Vec<f64> = recorder.cycles().iter().map(|c| c.secant_stiffness).collect();
     let scaled = grains.filter(|g| g.steps.mass_factor > 1.0).zip(system.grains());
@@ -420,7 +421,8 @@ fn validity_of<S: System>(system: &S, grains: Option<&GrainsPart>, recorder: &Re
         scaled_inertia(g.steps.mass_factor, kinetic, reference, Fall::of(view))
     });
     let bonds = system.grains().and_then(bond_rotation);
-    stiffness_drift(&secants).into_iter().chain(inertia).chain(bonds).collect()
+    let jumps = recorder.jumps().as_ref().map(jump_error);
+    stiffness_drift(&secants).into_iter().chain(jumps).chain(inertia).chain(bonds).collect()
 }
 
 fn settlement(

@@ -245,6 +245,16 @@ impl Summary {
                     1e3 * j.error_estimate,
                     100.0 * j.relative_error_estimate
                 ));
+                lines.extend(j.forecasts.iter().map(|f| {
+                    format!(
+                        "settlement of simulated cycle {:.0} forecast from cycle {:.0} [mm]: {:.3} +/- {:.3}, found {:.3}",
+                        f.cycle,
+                        f.from,
+                        1e3 * f.predicted,
+                        1e3 * f.error_estimate,
+                        1e3 * f.settlement
+                    )
+                }));
             }
         }
     }
