@@ -237,6 +237,9 @@ pub struct VerifyArgs {
 pub struct LifeArgs {
     /// Life file (TOML): scene, packings, traffic, tampings.
     pub life: PathBuf,
+    /// Check the file and list its runs, without running.
+    #[arg(long, conflicts_with_all = ["out", "resume", "force", "quiet"])]
+    pub plan: bool,
     /// Results directory [default: results/NAME of the file].
     #[arg(long)]
     pub out: Option<PathBuf>,

@@ -19,6 +19,7 @@ pub fn life(args: LifeArgs) -> Result<(), Failure> {
         threads: args.threads,
         resume: args.resume,
         force: args.force,
+        plan: args.plan,
         quiet: args.quiet,
         interrupt: Interrupt::on_signals("the active runs have written checkpoints")?,
     };

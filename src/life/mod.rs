@@ -35,6 +35,8 @@ pub struct Options {
     pub resume: bool,
     /// Overwrite existing runs.
     pub force: bool,
+    /// Check and list the runs only.
+    pub plan: bool,
     /// Print errors only.
     pub quiet: bool,
     /// Stop request.
@@ -65,6 +67,9 @@ pub fn execute(
     let threads = options.threads.unwrap_or_else(|| (cores / plan.packings.len()).max(1));
     if threads == 0 {
         return Err(Failure::Input("--threads: found 0, expected at least 1".into()));
+    }
+    if options.plan {
+        return Ok(plan.listed());
     }
     let dir = options.out.clone().unwrap_or_else(|| default_folder(file, &[]));
     let _lock = Lock::take(&dir)?;

@@ -2,10 +2,11 @@
 
 use super::chain::Chain;
 use super::plan::Plan;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use trackbed_io::columns::{cycles, history};
 use trackbed_io::failure::Failure;
 use trackbed_report::RunData;
+use trackbed_track::extrapolation::Forecast;
 use trackbed_track::settlement;
 
 /// Period of traffic of one packing.
@@ -30,6 +31,8 @@ pub struct Period {
     pub first: Option<f64>,
     /// Estimated error of cycle jumps [m].
     pub jump_error: f64,
+    /// Forecasts of the last simulated cycle from earlier ones.
+    pub forecasts: Vec<Forecast>,
     /// Jumps delayed by changes.
     pub delays: usize,
     /// Bed stiffness after the last cycle [N/m]; 0 if not reached.
@@ -133,6 +136,11 @@ pub fn period(
         before_jumps: first.and_then(at),
         first,
         jump_error: run.number("settlement.jump.error_estimate").unwrap_or(0.0),
+        forecasts: run
+            .list("settlement.jump.forecasts")
+            .iter()
+            .filter_map(|f| Forecast::deserialize(f).ok())
+            .collect(),
         delays: run.list("settlement.jump.delays").len(),
         bed_stiffness: stiffness.and_then(|s| s.last().map(|p| p[1])).unwrap_or(0.0),
         cpu_seconds: run.number("cpu_seconds").unwrap_or(0.0),

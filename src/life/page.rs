@@ -203,6 +203,30 @@ impl<'a> Life<'a> {
         Table { heads: heads.map(String::from).to_vec(), rows: self.laws.iter().map(row).collect() }
     }
 
+    /// Check of the jumps.
+    fn forecasts(&self) -> Option<Table> {
+        let heads = [
+            "period",
+            "packing",
+            "from cycle",
+            "cycle",
+            "forecast [mm]",
+            "estimated error [mm]",
+            "found [mm]",
+        ];
+        let mut rows = Vec::new();
+        for p in &self.periods {
+            rows.extend(p.forecasts.iter().map(|f| {
+                let mut row = [p.period.to_string(), p.packing.to_string()].map(Cell::text).to_vec();
+                row.extend([f.from, f.cycle].map(|n| Cell::text(format!("{n:.0}"))));
+                let lengths = [f.predicted, f.error_estimate, f.settlement];
+                row.extend(lengths.map(|s| Cell::text(format!("{:.2}", 1e3 * s))));
+                row
+            }));
+        }
+        (!rows.is_empty()).then(|| Table { heads: heads.map(String::from).to_vec(), rows })
+    }
+
     fn remarks(&self) -> Vec<String> {
         let plan = self.plan;
         let mut lines = vec![format!(
@@ -258,6 +282,10 @@ impl<'a> Life<'a> {
         text += &format!("{}\n{lines}\n## Settlement\n\n", self.events().markdown());
         text += "Mean of the packings; band: all packings with the estimated error of their jumps. Level: below the built track.\n\n";
         text += &self.curve().markdown();
+        if let Some(forecasts) = self.forecasts() {
+            text += "\n## Forecasts of simulated cycles\n\nExtrapolated as by a jump, from earlier cycles of the same bed.\n\n";
+            text += &forecasts.markdown();
+        }
         if !self.resistances.is_empty() {
             text += "\n![lateral resistance](resistance.svg)\n";
         }
@@ -368,6 +396,7 @@ mod tests {
             before_jumps: Some(2e-3),
             first: Some(10.0),
             jump_error: 1e-4,
+            forecasts: Vec::new(),
             delays: 0,
             bed_stiffness: 0.0,
             cpu_seconds: 0.0,

@@ -188,6 +188,33 @@ impl Plan {
         Some(set)
     }
 
+    /// Periods, tampings and runs, as text.
+    pub fn listed(&self) -> String {
+        let seeds: Vec<String> = self.packings.iter().map(u64::to_string).collect();
+        let mut text = format!(
+            "{}\n  packings with the seeds {}, {} runs of each at least\n",
+            self.title,
+            seeds.join(", "),
+            self.steps()
+        );
+        let mut begun = 0.0;
+        for (k, (end, cycles)) in self.ends.iter().zip(&self.cycles).enumerate() {
+            let axles = (end - begun) * self.axles_per_mgt;
+            text += &format!(
+                "  period {}: {begun} to {end} MGT, {axles:.0} axles, {cycles} load cycles\n",
+                k + 1
+            );
+            if k + 1 < self.ends.len() {
+                text += &format!("  tamping {}: {} stages\n", k + 1, self.stages.len());
+            }
+            begun = *end;
+        }
+        match &self.push {
+            Some(_) => text + "  lateral push of a copy of the bed after each\n",
+            None => text,
+        }
+    }
+
     /// Runs of each packing without repetitions: bed, periods, tampings, a push after each.
     pub fn steps(&self) -> usize {
         2 * self.ends.len() * if self.push.is_some() { 2 } else { 1 }

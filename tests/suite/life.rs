@@ -9,12 +9,12 @@ fn small() -> Folder {
     let bay = repository().join("inputs/track/life/bay.toml");
     let set = "[\"grains.0.count=150\", \"grains.1.count=60\", \"grains.2.count=20\", \"deposition.max_time=0.3\", \
         \"compaction.0.rest=0.05\", \"compaction.1.rest=0.2\", \"compaction.2.cycles=1\", \"compaction.2.rest=0.05\", \
-        \"track.load.frequency=20\", \"track.jump.first=10\", \"track.jump.measure=4\", \"output.frames=1\"]";
+        \"track.load.frequency=20\", \"track.jump.first=20\", \"track.jump.measure=4\", \"output.frames=1\"]";
     let text = fs::read_to_string(repository().join("inputs/track/life/life.toml")).unwrap();
     let text = text
         .replace("scene = \"bay.toml\"", &format!("scene = {:?}\nset = {set}", bay.to_str().unwrap()))
-        .replace("until = 19.25", "until = 1e-3")
-        .replace("at = [9.625]", "at = [6e-4]")
+        .replace("until = 19.25", "until = 1.6e-3")
+        .replace("at = [9.625]", "at = [1.2e-3]")
         .replace("cycles = 32", "cycles = 4")
         .replace("displacement = \"5 mm\"", "displacement = \"2.2 mm\"")
         .replace("[push]", "[control]\ntolerance = 10\n\n[push]");
@@ -44,7 +44,7 @@ fn a_small_life_adds_up() {
     near(&life_json["cycles_per_mgt"], cycles);
     let periods = life_json["periods"].as_array().unwrap();
     let counts: Vec<f64> = periods.iter().map(|p| p["cycles"].as_f64().unwrap()).collect();
-    let expected = [6e-4, 4e-4].map(|mgt: f64| (mgt * cycles).round());
+    let expected = [1.2e-3, 4e-4].map(|mgt: f64| (mgt * cycles).round());
     assert_eq!(counts, [expected[0], expected[0], expected[1], expected[1]]);
     let (tampings, pushes) = (&life_json["tampings"], &life_json["lateral_resistance"]);
     assert_eq!((tampings.as_array().unwrap().len(), pushes.as_array().unwrap().len()), (2, 8));
@@ -71,7 +71,7 @@ fn a_small_life_adds_up() {
     assert!((low - expected).abs() < 1e-12 && high - low > ends[0][1], "{low} {high}, not {expected}");
     let csv = Table::read(&out.join("life.csv"));
     assert!((csv.column("level").last().unwrap() - last).abs() < 1e-15);
-    assert!((csv.column("traffic").last().unwrap() - 1e-3).abs() < 0.5 / cycles);
+    assert!((csv.column("traffic").last().unwrap() - 1.6e-3).abs() < 0.5 / cycles);
     // Each period starts from the end of the run before.
     let height = |name: &str| Table::read(&out.join("1").join(name).join("history.csv")).column("sleeper_z");
     let [built, traffic, tamped, again] = ["built", "traffic-1", "tamped-1", "traffic-2"].map(height);
@@ -81,6 +81,13 @@ fn a_small_life_adds_up() {
     assert!((tamped.last().unwrap() - traffic.last().unwrap() - raised).abs() < 1e-12, "{raised}");
     assert!(raised != 0.0);
     assert!(said.stdout.contains("lateral resistance at 2 mm [kN]"), "{}", said.stdout);
+    // Forecasts of the last simulated cycle from half of the cycles.
+    let forecasts = periods[0]["forecasts"].as_array().unwrap();
+    let simulated = periods[0]["simulated"].as_f64().unwrap();
+    assert_eq!(forecasts[0]["cycle"], simulated);
+    assert_eq!(forecasts[0]["from"], (0.5 * simulated).floor());
+    let page = fs::read_to_string(out.join("life.md")).unwrap();
+    assert!(page.contains("## Forecasts of simulated cycles"), "{page}");
     for name in ["life.md", "life.svg", "resistance.svg"] {
         assert!(out.join(name).is_file(), "{name}");
     }
@@ -99,7 +106,7 @@ fn a_small_life_adds_up() {
 #[test]
 fn level_follows_the_sleeper() {
     let folder = small();
-    folder.edit("life.toml", "\"track.jump.first=10\", \"track.jump.measure=4\"", "\"track.jump=\"");
+    folder.edit("life.toml", "\"track.jump.first=20\", \"track.jump.measure=4\"", "\"track.jump=\"");
     let text = fs::read_to_string(folder.join("life.toml")).unwrap();
     let push = text.find("[push]").unwrap();
     folder.write("life.toml", &text[..push]);
@@ -120,6 +127,22 @@ fn level_follows_the_sleeper() {
         life_json["jumps"].as_array().unwrap().is_empty()
             && life_json["laws_alone"].as_array().unwrap().is_empty()
     );
+}
+
+#[test]
+fn plan_lists_the_runs() {
+    let folder = small();
+    let file = folder.join("life.toml").display().to_string();
+    let said = trackbed(["life", &file, "--plan"]).good().stdout;
+    for expected in [
+        "seeds 4, 5, 8 runs",
+        "period 2: 0.0012 to 0.0016 MGT, 21 axles, 16 load cycles",
+        "tamping 1: 2 stages",
+    ] {
+        assert!(said.contains(expected), "{said}");
+    }
+    folder.edit("life.toml", "displacement = \"2.2 mm\"", "displacement = \"-2 mm\"");
+    assert_eq!(trackbed(["life", &file, "--plan"]).code, 2);
 }
 
 #[test]
@@ -144,12 +167,12 @@ fn faults_name_the_key() {
         "traffic.axles: found shares with the sum 0.9, expected the sum 1",
     );
     refused(
-        "at = [6e-4]",
+        "at = [1.2e-3]",
         "at = [2e-3]",
         "tamping.at: found [0.002], expected rising values between 0 and `until`",
     );
     refused("per_year = 10.0", "per_year = 0", "traffic.per_year: found 0, expected above 0");
-    refused("until = 1e-3", "until = 6.0001e-4", "found a period of 0 cycles");
+    refused("until = 1.6e-3", "until = 1.20001e-3", "found a period of 0 cycles");
     refused("gap = \"80 mm\"", "gap = \"60 mm\"", "compaction.3.tines.gap");
     refused("direction = [1, 0]", "direction = [0, 0]", "push: ");
     refused("per_year", "a_year", "a_year");
