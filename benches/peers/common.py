@@ -26,12 +26,14 @@ def si(value):
     """Value in SI units of a number or a text such as "48 GPa"; other values as they are."""
     if isinstance(value, list):
         return [si(v) for v in value]
-    found = re.fullmatch(r"(-?[0-9.]+(?:e-?\d+)?) ([kMGmuc]?)(Pa|m|s|N|N/m|N m2|m/s|kg|kg/m|kg/m3|Hz|deg|N s/m)", value) if isinstance(value, str) else None
+    found = re.fullmatch(r"(-?[0-9.]+(?:e-?\d+)?) ([kMGmuc]?)(Pa|m|s|N|N/m|N m2|m/s|m/h|kg|kg/m|kg/m3|Hz|deg|N s/m)", value) if isinstance(value, str) else None
     if not found:
         return value
     number, prefix, unit = found.groups()
     if unit == "deg":
         return float(number) * 3.141592653589793 / 180
+    if unit == "m/h":
+        return float(number) * PREFIX[prefix] / 3600
     return float(number) * (1.0 if unit.startswith("kg") else PREFIX[prefix])
 
 
