@@ -17,7 +17,7 @@ fn small() -> Folder {
         .replace("at = [9.625]", "at = [1.2e-3]")
         .replace("cycles = 32", "cycles = 4")
         .replace("displacement = \"5 mm\"", "displacement = \"2.2 mm\"")
-        .replace("[push]", "[control]\ntolerance = 10\n\n[push]");
+        .replace("[control]\nrepetitions = 0 ", "[control]\ntolerance = 10 ");
     folder.write("life.toml", &text);
     folder
 }

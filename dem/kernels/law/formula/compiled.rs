@@ -121,6 +121,7 @@ fn functions(compiler: &str, text: &str) -> Result<[Function; WIDTHS.len()], Not
 /// New folder of this process alone. Each path serves once: a path that was loaded gives the same library again.
 fn folder() -> io::Result<PathBuf> {
     static NUMBER: AtomicUsize = AtomicUsize::new(0);
+    #[cfg_attr(not(unix), allow(unused_mut))]
     let mut builder = fs::DirBuilder::new();
     #[cfg(unix)]
     std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
