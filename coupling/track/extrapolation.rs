@@ -34,35 +34,41 @@ pub fn slope(cycles: &[[f64; 2]]) -> Option<Slope> {
     settlement::slope(cycles, WINDOW * cycles.last()?[0])
 }
 
-/// Estimated error [m] of an extrapolation over `span` = ln(N/n) with the slope `fit` of `cycles`.
+/// Estimated error [m] of an extrapolation over `span` = ln(N/n) with the slope `fit` of `cycles`; where no forecast
+/// can be compared, the slope itself counts as its miss.
 pub fn error(cycles: &[[f64; 2]], fit: &Slope, span: f64) -> f64 {
     let Some([age, settlement]) = cycles.last().copied() else { return 0.0 };
-    let miss = |part: f64| {
-        let earlier = until(cycles, part * age)?;
-        let from = earlier.last()?;
-        Some((settlement - from[1]) / libm::log(age / from[0]) - slope(earlier)?.slope)
+    let miss = |(earlier, own): (&[[f64; 2]], Slope)| {
+        let [from, before] = *earlier.last()?;
+        Some((settlement - before) / libm::log(age / from) - own.slope)
     };
-    let misses: Vec<f64> = PARTS.into_iter().filter_map(miss).collect();
-    let square = misses.iter().map(|m| m * m).sum::<f64>() / misses.len().max(1) as f64;
+    let misses: Vec<f64> = earlier(cycles).filter_map(miss).collect();
+    let square = match misses.len() {
+        0 => fit.slope * fit.slope,
+        count => misses.iter().map(|m| m * m).sum::<f64>() / count as f64,
+    };
     ERRORS * (fit.error * fit.error + square).sqrt() * span
 }
 
 /// Forecasts of the last of `cycles`, latest first.
 pub fn forecasts(cycles: &[[f64; 2]]) -> Vec<Forecast> {
     let Some([cycle, settlement]) = cycles.last().copied() else { return Vec::new() };
-    let forecast = |part: f64| {
-        let earlier = until(cycles, part * cycle)?;
+    let forecast = |(earlier, fit): (&[[f64; 2]], Slope)| {
         let [from, before] = *earlier.last()?;
-        let (fit, span) = (slope(earlier)?, libm::log(cycle / from));
-        let predicted = before + fit.slope * span;
-        Some(Forecast { from, cycle, predicted, error_estimate: error(earlier, &fit, span), settlement })
+        let span = libm::log(cycle / from);
+        let (predicted, error_estimate) = (before + fit.slope * span, error(earlier, &fit, span));
+        Some(Forecast { from, cycle, predicted, error_estimate, settlement })
     };
-    PARTS.into_iter().filter_map(forecast).collect()
+    earlier(cycles).filter_map(forecast).collect()
 }
 
-/// Cycles until `age`, if the sleeper is seated by then.
-fn until(cycles: &[[f64; 2]], age: f64) -> Option<&[[f64; 2]]> {
-    (age >= settlement::FIRST).then(|| &cycles[..cycles.partition_point(|c| c[0] <= age)])
+/// Cycles up to parts of the age at which the sleeper is seated, with their slope.
+fn earlier(cycles: &[[f64; 2]]) -> impl Iterator<Item = (&[[f64; 2]], Slope)> {
+    let age = cycles.last().map_or(0.0, |c| c[0]);
+    PARTS.into_iter().map(move |part| part * age).filter(|age| *age >= settlement::FIRST).filter_map(|age| {
+        let part = &cycles[..cycles.partition_point(|c| c[0] <= age)];
+        Some((part, slope(part)?))
+    })
 }
 
 #[cfg(test)]
@@ -111,5 +117,8 @@ mod tests {
         assert_eq!(forecasts(&cycles(19, f64::sqrt)), []);
         assert_eq!(forecasts(&cycles(20, f64::sqrt)).len(), 1);
         assert_eq!(error(&[], &Slope { slope: 1.0, error: 1.0 }, 1.0), 0.0);
+        // Without a forecast the extrapolation is unchecked, however smooth the cycles are.
+        let law = cycles(19, |n| 1e-3 * n.ln());
+        assert!((estimate(&law, 1.0) / 2e-3 - 1.0).abs() < 1e-9);
     }
 }

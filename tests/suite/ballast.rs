@@ -294,6 +294,9 @@ fn cycle_jumps_conserve_energy() {
         assert_eq!(summary["energy"]["flows"]["jumps"].as_f64().unwrap(), brought);
         assert!(summary["momentum"]["angular"].as_f64().unwrap() < 1e-9, "{}", summary["momentum"]);
         assert!(jump["jumps"][0]["predicted_slope"].as_f64().unwrap() > 0.0);
+        let checks = summary["validity"].as_array().unwrap();
+        let check = checks.iter().find(|c| c["name"] == "settlement error of cycle jumps").expect("a check");
+        assert_eq!(check["value"], jump["relative_error_estimate"]);
     }
 }
 

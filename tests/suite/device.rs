@@ -160,6 +160,15 @@ fn verification_has_columns_of_device_and_ranks() {
     assert_eq!(cells(0, "trackbed_gpu")["value"], cells(0, "trackbed")["value"]);
     assert!(cells(0, "trackbed_gpu")["value"].is_f64(), "{found}");
     assert_eq!(cells(1, "trackbed_gpu")["state"], "not_modelled");
+    // A device that fails, fails the verification.
+    let matrix = repository().join("inputs/verify/matrix.toml").display().to_string();
+    let out = folder.join("failed").display().to_string();
+    let arguments = ["verify", "--gpu", "--matrix", &matrix, "--out", &out, "--only", "oxide-restitution"];
+    let failed = with_libraries(libraries.path(), &[("STAND_IN_LAUNCHES", "90")], &arguments);
+    assert!(
+        failed.code == 3 && failed.stdout.contains("trackbed, GPU: `oxide-restitution` failed: "),
+        "{failed:?}"
+    );
 }
 
 #[test]

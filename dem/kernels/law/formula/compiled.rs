@@ -90,13 +90,16 @@ impl Formula {
     }
 }
 
+/// Place of a width in [`WIDTHS`].
 const fn column(numbers: usize) -> Option<usize> {
-    match numbers {
-        1 => Some(0),
-        4 => Some(1),
-        8 => Some(2),
-        _ => None,
+    let mut k = 0;
+    while k < WIDTHS.len() {
+        if WIDTHS[k] == numbers {
+            return Some(k);
+        }
+        k += 1;
     }
+    None
 }
 
 fn text(program: &Program) -> String {
